@@ -357,12 +357,15 @@ def test_where_the_model_asks_for_it_only_what_somebody_else_has_approved_is_dep
         with signed_in(station.model, station.port) as maria:
             name = maria.get("session").json()["person"]["name"]
             verdict = f"model/revisions/{revision}/reviews"
+            assert maria.get("model/changes").json()["waits"]["name"] == "One again"
+            assert station.asked("GET", "model/changes")["waits"] is None  # it is their own
             wanted = maria.post(verdict, json={"verdict": "changes-requested", "text": "Why?"})
             assert wanted.is_success, wanted.text
             refused = station.deploy(revision)
             assert (refused.status_code, refused.json()["type"]) == (409, "/problems/not-approved")
             assert name in refused.json()["detail"]
             assert maria.post(verdict, json={"verdict": "approved"}).is_success
+            assert maria.get("model/changes").json()["waits"] is None
         assert station.deploy(revision).status_code == 204
         assert station.outcome(revision)["state"] == "runs"
         until(station.up)
@@ -370,3 +373,8 @@ def test_where_the_model_asks_for_it_only_what_somebody_else_has_approved_is_dep
         records = station.asked("GET", "audit?limit=50")["records"]
         approved = [each["entry"]["details"]["approved_by"] for each in records if each["entry"]["action"] == "deploy"]
         assert [name] in approved
+        verdicts = [each["entry"] for each in records if each["entry"]["action"].startswith("revision-")]
+        assert [(each["action"], each["actor"]["name"]) for each in verdicts[:2]] == [
+            ("revision-approved", name),
+            ("revision-changes-requested", name),
+        ]

@@ -13,6 +13,10 @@ import pytest
 from websockets.sync.client import ClientConnection
 
 from sequence_planner.auth.roles import Role
+from sequence_planner.core.actor import ActorKind
+from sequence_planner.core.storage_error import StorageError
+from sequence_planner.journal import audit
+from sequence_planner.journal.entry import LONGEST_REASON
 from sequence_planner.model.files import read_files
 from sequence_planner.server.settings import Settings
 from support.network import free_port
@@ -270,7 +274,7 @@ def test_places_in_which_the_draft_differs_are_counted(eva: httpx.Client) -> Non
     number = made(eva, {"kind": "text", "file": "resources/notes.yaml", "was": None, "text": "one: 1\ntwo: 2\n"})[
         "number"
     ]
-    assert read(eva, "/changes") == {"number": number, "changes": 2}
+    assert read(eva, "/changes") == {"number": number, "changes": 2, "waits": None}
 
 
 def test_versions_are_compared(eva: httpx.Client) -> None:
@@ -533,6 +537,95 @@ def test_a_revision_is_approved_by_somebody_else_than_who_saved_it(
     problem(unknown, 404, "no-revision")
     with server.client(Role.OPERATOR) as otto:
         problem(judged(otto, "approved"), 403, "role-too-low")
+
+
+def test_verdicts_are_in_the_record_of_who_did_what(server: Server, eva: httpx.Client, adam: httpx.Client) -> None:
+    """Each in its chain, in one transaction with the verdict itself: the controller, which is not there, has no part in
+    it. What is refused leaves no record.
+    """
+    made(eva, TITLE)
+    saved = eva.post(f"{MODEL}/revisions", json={"number": read(eva)["number"], "name": "Bolts"}).json()
+    long = "Say which bolts. " * 100
+    for verdict, text in (("changes-requested", long.strip()), ("approved", ""), ("withdrawn", "I had not seen all.")):
+        answer = adam.post(f"{MODEL}/revisions/{saved['id']}/reviews", json={"verdict": verdict, "text": text})
+        assert answer.status_code == 201
+    problem(eva.post(f"{MODEL}/revisions/{saved['id']}/reviews", json={"verdict": "approved"}), 403, "same-person")
+    with server.identity.database.reading() as connection:
+        records = [each.entry for each in audit.read(connection) if each.entry.subject == "revision Bolts"][::-1]
+        assert audit.broken_at(connection) is None
+    person = adam.get("/api/v1/session").json()["person"]
+    assert {(each.actor.kind, each.actor.id, each.actor.name) for each in records} == {
+        (ActorKind.PERSON, person["id"], person["name"])
+    }
+    assert [(each.action, each.reason) for each in records] == [
+        ("revision-changes-requested", long[:LONGEST_REASON]),
+        ("revision-approved", None),
+        ("revision-verdict-withdrawn", "I had not seen all."),
+    ]
+    assert all(each.details["revision"] == saved["id"] for each in records)
+    assert all(each.details["saved_by"] == saved["by"] for each in records)
+    assert [each.details.get("text") for each in records] == [long.strip(), None, None]
+
+
+def test_where_nothing_can_be_recorded_there_is_no_verdict(
+    eva: httpx.Client, adam: httpx.Client, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made(eva, TITLE)
+    saved = eva.post(f"{MODEL}/revisions", json={"number": read(eva)["number"], "name": "Bolts"}).json()
+
+    def fails(*_: object) -> None:
+        raise StorageError("the journal's end was taken out of the database")
+
+    monkeypatch.setattr(audit, "append", fails)
+    refused = adam.post(f"{MODEL}/revisions/{saved['id']}/reviews", json={"verdict": "approved"})
+    assert refused.status_code == 503
+    assert read(adam, "/comments")["comments"] == []
+    assert [each["approved_by"] for each in read(adam, "/revisions")["revisions"] if each["draft"]] == [[]]
+
+
+def test_others_are_told_what_waits_for_their_approval(
+    loop: Loop, settings: Settings, model: Path, server: Server, eva: httpx.Client, adam: httpx.Client
+) -> None:
+    """From when it is saved until somebody has said what they think of it, it is another draft, or it runs."""
+
+    def waits(client: httpx.Client) -> dict[str, Any] | None:
+        found: dict[str, Any] | None = read(client, "/changes")["waits"]
+        return found
+
+    def save(name: str) -> dict[str, Any]:
+        saved: dict[str, Any] = eva.post(
+            f"{MODEL}/revisions", json={"number": read(eva)["number"], "name": name}
+        ).json()
+        return saved
+
+    made(eva, TITLE)
+    save("Bolts")
+    assert waits(adam) is None  # nobody says that the station asks for an approval
+    controller = Controller(loop, settings.controller_socket)
+    identity = controller.view.station.model_copy(update={"deployment_approval": "dual"})
+    controller.view = controller.view.model_copy(update={"station": identity})
+    controller.start()
+    try:
+        server.hear_controller()
+        until(lambda: waits(adam) is not None)
+        assert waits(eva) is None  # what she has saved does not wait for her
+        made(eva, {**TITLE, "was": TITLE["value"], "value": "Bolts again"})
+        assert waits(adam) is None  # it is not what would be deployed
+        second = save("Again")
+        told = waits(adam)
+        assert told is not None
+        assert (told["id"], told["name"], told["by"]) == (second["id"], "Again", second["by"])
+        assert told["number"] == len(read(adam, "/revisions")["revisions"])
+        address = f"{MODEL}/revisions/{second['id']}/reviews"
+        for verdict in ("approved", "changes-requested"):
+            assert adam.post(address, json={"verdict": verdict, "text": "Why?"}).status_code == 201
+            assert waits(adam) is None
+            assert adam.post(address, json={"verdict": "withdrawn"}).status_code == 201
+            assert waits(adam) == told
+        (model / "station.yaml").write_text(read(eva, "/files", path="station.yaml")["files"]["station.yaml"]["text"])
+        until(lambda: waits(adam) is None)  # it runs
+    finally:
+        controller.stop()
 
 
 def test_the_state_space_of_the_draft_is_told_folded(eva: httpx.Client) -> None:

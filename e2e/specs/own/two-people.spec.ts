@@ -135,7 +135,19 @@ test('what is deployed was approved by somebody else than who saved it, and who 
 	browse
 }) => {
 	test.slow();
-	const [erik, ina] = [await browse(ERIK, '/review'), await browse(INA, '/review')];
+	const [erik, ina, ada] = [await browse(ERIK, '/review'), await browse(INA, '/review'), await browse(ADA, '/')];
+	const WAITS = /Revision 2, “Bolt cell”, by Erik waits for a second person’s approval\./;
+	const mark = (page: Page): Locator => page.getByRole('link', { name: 'Review changes' }).locator('.badge');
+	const waits = (page: Page): Locator => page.getByTestId('waits');
+	/** Who else may approve it is told that it waits for that, on the page, on Operate and in the rail, without a reload. */
+	const told = async (is: boolean): Promise<void> => {
+		for (const page of [ina, ada]) {
+			if (is) await expect(waits(page)).toHaveText(WAITS, { timeout: 20_000 });
+			else await expect(waits(page)).toHaveCount(0, { timeout: 20_000 });
+			await expect(mark(page)).toHaveText(is ? '!' : '1');
+		}
+		await expect(waits(erik)).toHaveCount(0);
+	};
 	await drafting.change('Another title', ['station.yaml', 'title: {en: Bolt tightening station,', 'title: {en: Bolt cell,']);
 	const need = (page: Page, name: string): Locator => page.locator(`[data-need="${name}"]`);
 	await expect(need(erik, 'approved')).toContainText('It can be approved once it is saved.');
@@ -145,8 +157,14 @@ test('what is deployed was approved by somebody else than who saved it, and who 
 	await saving.getByRole('button', { name: 'Save', exact: true }).click();
 	await expect(need(erik, 'approved')).toContainText('You have saved it: somebody else has to approve it on this page.');
 	await expect(need(erik, 'approved').getByRole('button')).toHaveCount(0);
+	await told(true);
+	await expect(mark(erik)).toHaveText('1');
+	await expect(mark(ada)).toHaveAttribute('title', WAITS);
+	await expect(waits(ada).getByRole('link', { name: 'Look at the changes' })).toHaveAttribute('href', '/review');
+	await examine(ina, 'review-waits');
+	await ina.setViewportSize({ width: 1440, height: 900 });
 
-	await need(ina, 'approved').getByRole('button', { name: 'Approve, or ask for changes' }).click();
+	await waits(ina).getByRole('button', { name: 'Approve, or ask for changes' }).click();
 	const field = ina.getByLabel('Say something to the other engineers');
 	await expect(field).toBeFocused();
 	await expect(ina.getByRole('button', { name: 'Ask for changes', exact: true })).toHaveAttribute('aria-disabled', 'true');
@@ -156,6 +174,7 @@ test('what is deployed was approved by somebody else than who saved it, and who 
 	await expect(field).toHaveValue('');
 	await expect(need(erik, 'approved')).toContainText('Ina asked for changes.');
 	await expect(need(erik, 'approved')).toHaveAttribute('data-met', 'false');
+	await told(false);
 	await erik.getByRole('tab', { name: /^Talk/ }).click();
 	await expect(erik.getByText('Why is it no station any more?')).toBeVisible();
 	await expect(erik.getByRole('button', { name: 'Approve', exact: true })).toHaveCount(0);
@@ -169,8 +188,10 @@ test('what is deployed was approved by somebody else than who saved it, and who 
 	await expect(erik.locator('[data-revision="Bolt cell"]')).toContainText('Approved by Ina.');
 	await ina.getByRole('button', { name: 'Withdraw what I said of it' }).click();
 	await expect(need(erik, 'approved')).toHaveAttribute('data-met', 'false');
+	await told(true);
 	await ina.getByRole('button', { name: 'Approve', exact: true }).click();
 	await expect(need(erik, 'approved')).toHaveAttribute('data-met', 'true');
+	await told(false);
 
 	await need(erik, 'control').getByRole('button', { name: 'Take control' }).click();
 	await erik.getByRole('dialog').getByRole('button', { name: 'Take over' }).click();
@@ -182,4 +203,15 @@ test('what is deployed was approved by somebody else than who saved it, and who 
 	await dialog.getByRole('button', { name: 'Deploy' }).click();
 	await expect(erik.getByTestId('deployment')).toHaveAttribute('data-phase', 'runs', { timeout: 60_000 });
 	await expect(erik.locator('[data-revision="Bolt cell"]')).toHaveAttribute('data-running', 'true');
+
+	// Who looks for that later finds it in the journal.
+	await ada.goto('/journal');
+	const record = (act: string): Locator => ada.getByRole('row').filter({ has: ada.getByRole('rowheader', { name: act, exact: true }) });
+	await expect(record('Deployed a revision')).toContainText('revision Bolt cell, approved by Ina');
+	await expect(record('Approved a revision')).toHaveCount(2);
+	for (const act of ['Approved a revision', 'Withdrew what they had said of a revision', 'Asked for changes in a revision']) {
+		await expect(record(act).first()).toContainText('Ina');
+		await expect(record(act).first()).toContainText('revision Bolt cell, saved by Erik');
+	}
+	await expect(record('Asked for changes in a revision')).toContainText('Why is it no station any more?');
 });

@@ -1,3 +1,4 @@
+import type { Locator } from '@playwright/test';
 import { spawnSync } from 'node:child_process';
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -141,6 +142,52 @@ test('the state space of the draft is folded by chosen variables, with the plan 
 		await expect(picture.locator('[data-mark="unsafe"]')).not.toHaveCount(0);
 		await expect(main.getByRole('region', { name: 'Plan on it' }).getByRole('listitem').first()).toContainText('The beginning');
 	});
+
+	await test.step('it begins at the state of the station, large enough to be read, and all of it is a press away', async () => {
+		const box = (locator: Locator) => locator.evaluate((each) => each.getBoundingClientRect().toJSON() as DOMRect);
+		const scale = (): Promise<number> => picture.locator('.svelte-flow__viewport').evaluate((each) => new DOMMatrix(getComputedStyle(each).transform).a);
+		const cut = (): Promise<string[]> =>
+			nodes.locator('.of, strong').evaluateAll((all) => all.filter((each) => each.scrollWidth > each.clientWidth + 1 || each.scrollHeight > each.clientHeight + 1).map((each) => each.textContent));
+		for (const [width, height] of [[1440, 900], [768, 1024], [390, 844]] as const) {
+			await operate.setViewportSize({ width, height });
+			await operate.reload();
+			await expect(picture).toHaveAttribute('data-laid', 'true', SIMULATED);
+			const present = nodes.filter({ has: operate.locator('[data-mark="present"]') });
+			await expect(present).toBeInViewport();
+			const letters = await present.locator('span, strong').evaluateAll((all) => Math.min(...all.map((each) => parseFloat(getComputedStyle(each).fontSize))));
+			expect(letters * (await scale()), `pixels of the letters on a screen of ${width}`).toBeGreaterThanOrEqual(11);
+			const [room, at] = [await box(picture), await box(present)];
+			expect(at.left).toBeGreaterThanOrEqual(room.left);
+			expect(at.right).toBeLessThanOrEqual(room.right);
+			expect(at.top).toBeGreaterThanOrEqual(room.top);
+			expect(at.bottom).toBeLessThanOrEqual(room.bottom);
+			expect(await cut(), `cut on a screen of ${width}`).toEqual([]);
+		}
+		await operate.setViewportSize({ width: 1440, height: 900 });
+		await picture.getByRole('button', { name: 'Show all of it' }).click();
+		await expect.poll(scale).toBeLessThan(1);
+		const [room, all] = [await box(picture), await nodes.evaluateAll((every) => every.map((each) => each.getBoundingClientRect().toJSON() as DOMRect))];
+		expect(all.length).toBeGreaterThan(1);
+		for (const each of all) {
+			expect(each.left).toBeGreaterThanOrEqual(room.left);
+			expect(each.right).toBeLessThanOrEqual(room.right);
+			expect(each.bottom).toBeLessThanOrEqual(room.bottom);
+		}
+	});
+
+	await test.step('the view stands in the address: a reload, a link and Back lead to it', async () => {
+		await expect(operate).toHaveURL(/\/what-if\?view=space$/);
+		await main.getByRole('button', { name: 'Step by step' }).click();
+		await expect(operate).toHaveURL(/view=steps$/);
+		await expect(picture).toHaveCount(0);
+		await operate.goBack();
+		await expect(main.getByRole('button', { name: 'State space' })).toHaveAttribute('aria-pressed', 'true');
+		await expect(picture).toHaveAttribute('data-laid', 'true', SIMULATED);
+		await operate.getByRole('link', { name: 'State', exact: true }).click();
+		await expect(operate).toHaveURL(/\/state$/);
+		await operate.goBack();
+		await expect(picture).toHaveAttribute('data-laid', 'true', SIMULATED);
+	});
 	await examine(operate, 'state-space');
 
 	await test.step('the keyboard leads from node to node and to what is said of one', async () => {
@@ -193,6 +240,7 @@ test('the state space of the draft is folded by chosen variables, with the plan 
 		await expect(picture.locator('[data-mark="cut"]')).not.toHaveCount(0);
 		await main.getByRole('button', { name: 'Look at all again' }).click();
 		await expect(picture.locator('[data-mark="cut"]')).toHaveCount(0, SIMULATED);
+		await expect(operate).toHaveURL(/\/what-if\?view=space$/);
 	});
 });
 

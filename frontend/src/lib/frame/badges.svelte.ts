@@ -1,4 +1,4 @@
-/** What is said beside the name of a page: how many alarms stand, that a restart needs somebody, and what is not deployed. */
+/** What is said beside the name of a page: how many alarms stand, that a restart needs somebody, and what is not deployed, or waits for an approval. */
 import { byUrgency, isOver } from '#lib/alarm/priority.ts';
 import type { Priority } from '#lib/contract.ts';
 import type { Page } from '#lib/account/pages.ts';
@@ -13,6 +13,12 @@ export interface Badge {
 	readonly means: string;
 	/** Of the most urgent alarm; null where none stands. */
 	readonly priority: Priority | null;
+}
+
+/** An approval that is waited for, before changes that are not deployed. */
+export function reviewBadge({ waits, changes }: Pick<typeof undeployed, 'waits' | 'changes'>): Badge | null {
+	if (waits) return { text: '!', means: say().frame.waits.said(waits.number, waits.name, waits.by), priority: null };
+	return changes > 0 ? { text: String(changes), means: say().frame.undeployed(changes), priority: null } : null;
 }
 
 class Badges {
@@ -31,9 +37,7 @@ class Badges {
 		if (page === 'alarms' && this.#alarms.length > 0) {
 			return { text: String(this.#alarms.length), means: say().frame.alarms(this.#alarms.length), priority };
 		}
-		if (page === 'review' && undeployed.changes > 0) {
-			return { text: String(undeployed.changes), means: say().frame.undeployed(undeployed.changes), priority: null };
-		}
+		if (page === 'review') return reviewBadge(undeployed);
 		return page === 'restart' && this.#wanted ? { text: '!', means: say().restart.notice.wanted, priority } : null;
 	}
 }

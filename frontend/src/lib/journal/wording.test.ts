@@ -61,6 +61,18 @@ test('on what it was done is said by its title, and with what was changed', () =
 	expect(subjectText(record('release-force', 'bolts[bolt_pair_1]'), names)).toBe('Bolts · bolt pair 1');
 });
 
+test('what somebody thinks of a revision says who saved it, and a deployment who has approved it', () => {
+	const said = (action: string, details: AuditRecord['entry']['details']): string => {
+		const about = record(action, 'revision Bolts', details);
+		return `${actText(action)}: ${subjectText(about, names)}`;
+	};
+	expect(said('revision-approved', { revision: 'a', saved_by: 'Eva' })).toBe('Approved a revision: revision Bolts, saved by Eva');
+	expect(said('revision-changes-requested', { saved_by: 'Eva' })).toBe('Asked for changes in a revision: revision Bolts, saved by Eva');
+	expect(said('deploy', { approved_by: ['Adam', 'Maria'] })).toBe('Deployed a revision: revision Bolts, approved by Adam and Maria');
+	expect(said('deploy', { approved_by: [] })).toBe('Deployed a revision: revision Bolts');
+	expect(said('deploy', {})).toBe('Deployed a revision: revision Bolts');
+});
+
 test('why it was refused, and every detail, can be read', () => {
 	expect(becauseText(record('set-mode', '', { because: 'control-needed' }))).toBe('control is needed');
 	expect(becauseText(record('set-mode', '', { because: 'the-moon-is-full' }))).toBe('the moon is full');

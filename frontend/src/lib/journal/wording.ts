@@ -4,6 +4,7 @@ import type { Names } from '#lib/history/names.ts';
 import { modeText, served } from '#lib/history/told.ts';
 import { told } from '#lib/text/message.ts';
 import { say } from '#lib/text/text.svelte.ts';
+import { listed } from '#lib/wording/listed.ts';
 import { inSentence } from '#lib/wording/names.svelte.ts';
 import { titledAlone } from '#lib/wording/titled.svelte.ts';
 
@@ -108,6 +109,12 @@ export function subjectText(record: AuditRecord, names: Pick<Names, 'variable' |
 			return names.variable(subject);
 		case 'person-changed':
 			return [subject, ...changes(details)].join(', ');
+		case 'deploy':
+			return joined(subject, peopleIn(details['approved_by'], journal.approvedBy));
+		case 'revision-approved':
+		case 'revision-changes-requested':
+		case 'revision-verdict-withdrawn':
+			return joined(subject, peopleIn([details['saved_by']], journal.savedBy));
 		case 'set-override':
 			return [subject, ...settings(details['fields'], detailOf)].join(', ');
 		case 'correct-estimates':
@@ -122,6 +129,15 @@ export function subjectText(record: AuditRecord, names: Pick<Names, 'variable' |
 /** `Engine 4711 (job 4711)`; without a title, or with its number for one, what it is called otherwise. */
 const titled = (title: string, subject: string): string =>
 	title === '' || subject.endsWith(` ${title}`) ? subject : `${title} (${subject})`;
+
+/** `revision Bolts, approved by Adam and Eva`. */
+const joined = (...parts: readonly string[]): string => parts.filter((each) => each !== '').join(', ');
+
+/** Those who are named, as `said`; empty where nobody is. */
+function peopleIn(names: unknown, said: (people: string) => string): string {
+	const people = Array.isArray(names) ? names.filter((each) => typeof each === 'string') : [];
+	return people.length === 0 ? '' : said(listed(people));
+}
 
 /** `role: operator → engineer`, of what changed from one value to another. */
 function changes(details: Details): string[] {

@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import type { FoldedState, StateArrow, StateCause } from '#lib/contract.ts';
-import { drawnArrows, lookOf, onPath, standingOf } from './drawn.ts';
+import { drawnArrows, linesOf, lookOf, onPath, standingOf, valueLines } from './drawn.ts';
 
 const node = (counts: Partial<FoldedState>): FoldedState => ({ values: [], states: 4, initial: false, present: false, violated: [], forbidden: 0, unsafe: 0, stuck: 0, cut: 0, ...counts });
 const cause = (kind: string, allowed = true): StateCause => ({ kind, name: kind, title: { id: 'step.so', arguments: {} }, allowed, kept: !allowed });
@@ -33,5 +33,32 @@ describe('the arrows that are drawn', () => {
 		expect(lookOf(arrow(0, 1, cause('start', false), cause('device')))).toBe('device');
 		expect(lookOf(arrow(0, 1, cause('fault')))).toBe('fault');
 		expect(lookOf(arrow(0, 1, cause('start'), cause('fault')))).toBe('start');
+	});
+});
+
+describe('how a value is set in a node', () => {
+	/** Letters are as wide as each other; strong ones are wider. */
+	const measure = (text: string, isStrong = false): number => text.length * (isStrong ? 2 : 1);
+	const room = { width: 20, gap: 2, most: 3 };
+
+	it('has all of its words, in as many lines as they take', () => {
+		expect(linesOf('home', 20, measure)).toBe(1);
+		expect(linesOf('the pose before the tool', 12, measure)).toBe(3); // the pose | before the | tool
+		expect(linesOf('unbrokenwordthatislong', 10, measure)).toBe(3);
+		expect(linesOf('a unbrokenwordthatislong', 10, measure)).toBe(4);
+	});
+
+	it('is beside the name where each value has room there', () => {
+		expect(valueLines('the pose', ['home', 'away'], room, measure)).toEqual({ below: false, name: 1, value: 1 });
+	});
+
+	it('is below it where one has none, and takes the lines of the longest', () => {
+		const values = ['home', 'before the tool'];
+		expect(valueLines('the pose', values, room, measure)).toEqual({ below: true, name: 1, value: 2 });
+		expect(valueLines('the pose of the robot', values, room, measure)).toEqual({ below: true, name: 2, value: 2 });
+	});
+
+	it('is shortened where it would take too many', () => {
+		expect(valueLines('it', ['a long value of very many words indeed'], room, measure).value).toBe(3);
 	});
 });

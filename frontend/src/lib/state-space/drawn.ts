@@ -43,3 +43,38 @@ export function lookOf(arrow: StateArrow): 'kept' | 'fault' | 'together' | 'star
 	if (arrow.causes.every(({ kind }) => kind === 'fault')) return 'fault';
 	return arrow.causes.some(({ kind, allowed }) => kind === 'start' && allowed) ? 'start' : 'device';
 }
+
+/** How wide a text is, in pixels. */
+export type Measure = (text: string, isStrong: boolean) => number;
+
+/** The lines that a text takes where its words are put into lines of this width; a word that is longer is broken. */
+export function linesOf(text: string, width: number, measure: (text: string) => number): number {
+	let [lines, line] = [1, ''];
+	for (const word of text.split(' ')) {
+		const longer = line === '' ? word : `${line} ${word}`;
+		if (measure(longer) <= width) line = longer;
+		else {
+			if (line !== '') lines++;
+			const broken = Math.max(1, Math.ceil(measure(word) / width));
+			lines += broken - 1;
+			line = word;
+		}
+	}
+	return lines;
+}
+
+/** The lines of a chosen variable in each node: beside its name where each value has room there, or else below it. */
+export interface ValueLines {
+	readonly below: boolean;
+	readonly name: number;
+	/** Of the longest value. */
+	readonly value: number;
+}
+
+/** How the name of a variable and any of its values are set in a node with so much room, with `most` lines for each at most. */
+export function valueLines(name: string, values: readonly string[], room: { readonly width: number; readonly gap: number; readonly most: number }, measure: Measure): ValueLines {
+	const widths = values.map((value) => measure(value, true));
+	if (measure(name, false) + room.gap + Math.max(0, ...widths) <= room.width) return { below: false, name: 1, value: 1 };
+	const lines = (text: string, isStrong: boolean): number => Math.min(room.most, linesOf(text, room.width, (each) => measure(each, isStrong)));
+	return { below: true, name: lines(name, false), value: Math.max(1, ...values.map((value) => lines(value, true))) };
+}

@@ -49,7 +49,7 @@ export class WorkshopSeen {
 					this.view = message.workshop;
 					this.live = true;
 					this.refusal = null;
-					if (this.example === null) undeployed.changes = message.workshop.changes;
+					if (this.example === null) undeployed.hear(message.workshop);
 					told(before !== message.workshop.number);
 				},
 				closed: (code) => {

@@ -315,11 +315,29 @@ class WorkshopView(View):
     comment: int = 0
 
 
+class WaitingRevisionView(View):
+    """A revision that waits for a second person's approval; `number` counts from the oldest, which is 1.
+
+    Time is in seconds since the epoch.
+    """
+
+    id: str
+    number: int
+    name: str
+    by: str
+    time: float
+
+
 class DraftChangesView(View):
-    """In how many places the draft after change `number` differs from what runs."""
+    """In how many places the draft after change `number` differs from what runs.
+
+    `waits` is the revision that the draft is, where the model that runs asks for a second person's approval, who asks
+    could give it, and nobody has approved it or wants changes; null for who saved it, and for who is no person.
+    """
 
     number: int
     changes: int
+    waits: WaitingRevisionView | None = None
 
 
 # The draft as it is shown.

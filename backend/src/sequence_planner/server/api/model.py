@@ -53,6 +53,7 @@ from sequence_planner.server.dependencies import (
     Actor,
     Body,
     Controller,
+    Identity,
     NothingBody,
     UnreadBody,
     found,
@@ -69,6 +70,7 @@ from sequence_planner.server.services.drafts import (
     looked_at,
     refusal,
 )
+from sequence_planner.server.services.reviews import waiting_revision
 from sequence_planner.server.stream.endpoints import serve
 from sequence_planner.texts.message import message
 
@@ -109,9 +111,14 @@ async def draft(shop: LookedAt, actor: Actor) -> DraftView:
 
 
 @model_router.get("/changes", dependencies=[VIEWER])
-async def draft_changes(shop: TheWorkshop) -> DraftChangesView:
-    """In how many places the draft differs from what runs."""
-    return await shop.changes()
+async def draft_changes(
+    shop: TheWorkshop, identity: Identity, controller: Controller, actor: Actor
+) -> DraftChangesView:
+    """In how many places the draft differs from what runs, and whether it waits for a second person's approval."""
+    changes, view = await shop.changes(), controller.view
+    if view is None or view.station.deployment_approval != "dual":
+        return changes
+    return changes.model_copy(update={"waits": await waiting_revision(shop, identity, actor)})
 
 
 @model_router.get("/files", dependencies=[VIEWER], response_model=FilesView, responses=refused(404))

@@ -75,6 +75,8 @@ class Workshop(ReadableWorkshop):
         self._comparing = ComparisonDesk(model)
         self._marks: tuple[Draft, dict[str, FileMark], int] | None = None  # and in how many places it differs
         self._opening = asyncio.Lock()
+        self._saves = 0  # so far
+        self._edited: tuple[tuple[Draft, int], tuple[Revision, int] | None] | None = None  # as what that is saved
         self._planned: PlannedDeploymentView | None = None
         self._comment = 0
         self._deployed_over: tuple[float, Files] | None = None  # when, and what: until it is seen what became of it
@@ -234,10 +236,28 @@ class Workshop(ReadableWorkshop):
 
     async def saved(self) -> tuple[list[Revision], str, str]:
         """All revisions, newest first, and the trees of what runs and of the draft. Raises `WorkerError`."""
-        draft = await self.open()
+        return await self._revised(await self.open())
+
+    async def _revised(self, draft: Draft) -> tuple[list[Revision], str, str]:
         found = await self._editing.ask(draft.files, "revised", self._revisions, draft.base)
         assert isinstance(found, tuple)
         return found
+
+    async def edited_revision(self) -> tuple[Revision, int] | None:
+        """The revision that the draft is, with its number from the oldest on, where another model runs; found once for
+        each draft, which is neither begun nor checked for that. Raises `WorkerError`.
+        """
+        draft = await self._identity.read(drafts.read)
+        async with self._opening:
+            files = await run_in_threadpool(self._files.read)
+        if not draft.number or draft.files == files:
+            return None
+        asked = draft, self._saves
+        if self._edited is None or self._edited[0] != asked:
+            revisions, _, tree = await self._revised(draft)
+            numbered = zip(revisions, range(len(revisions), 0, -1), strict=True)
+            self._edited = asked, next(((each, number) for each, number in numbered if each.tree == tree), None)
+        return self._edited[1]
 
     async def files_of(self, revision: str) -> dict[str, str]:
         """The files of a revision. Raises `EditError` where there is none, and `WorkerError`."""
@@ -258,6 +278,7 @@ class Workshop(ReadableWorkshop):
         asked = self._revisions, draft.base, name, message, by, self._identity.now()
         saved = await self._editing.ask(draft.files, "saved", *asked)
         assert isinstance(saved, Revision)
+        self._saves += 1
         return next(each for each in (await self.revised()).revisions if each.id == saved.id)
 
     def note_deployment(self, draft: Draft) -> None:

@@ -65,6 +65,11 @@ export const frame = {
 	takeControlFirst: 'Take control first',
 	lookOn: (role: string): string => `You look on as ${role}; an operator acts.`,
 	alarms: (n: number): string => (n === 1 ? '1 alarm' : `${n} alarms`),
+	/** A revision that somebody else has saved, to who may approve it. */
+	waits: {
+		said: (number: number, name: string, by: string): string => `Revision ${number}, “${name}”, by ${by} waits for a second person’s approval.`,
+		look: 'Look at the changes'
+	},
 	undeployed: (n: number): string => (n === 1 ? '1 change is not deployed' : `${n} changes are not deployed`),
 	noAlarms: 'No alarms',
 	alarmsWhenHeard: (n: number): string => (n === 0 ? 'No alarms when last heard' : n === 1 ? '1 alarm when last heard' : `${n} alarms when last heard`),

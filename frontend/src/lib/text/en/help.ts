@@ -137,7 +137,8 @@ export const help: Helped = {
 				'Go on otherwise from any step: that is a branch of its own.',
 				'Follow the plan, or run until a condition holds.',
 				'Or try it in simulated time: let the clock run, give a device a fault, go back to a moment and on otherwise.',
-				'Or see the whole state space: choose variables to fold it by, and what is forbidden or not safe stands out.'
+				'Or see the whole state space: choose variables to fold it by, and what is forbidden or not safe stands out. The picture begins where the station is; the last button above it shows all of it.',
+				'The address keeps which of the three is shown.'
 			]
 		},
 		begin: {
@@ -156,6 +157,7 @@ export const help: Helped = {
 				'Read what will be different: each change in a sentence, with what follows from it. Files show every line.',
 				'The plan of the station as it stands now, with the model that runs and with the draft.',
 				'Checks: what was looked for, how long it took, and what was found.',
+				'Where two people are needed, an engineer who did not save the revision approves it or asks for changes, below Talk. Until then all who may are told, here and on Operate.',
 				'Bring it to the station: do what is still missing in the list, then deploy.',
 				'Revisions: see what differs, or go back to one. You read what that undoes first.'
 			]

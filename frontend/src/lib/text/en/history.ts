@@ -261,6 +261,8 @@ export const history = {
 		byOption: 'started with --\u2060start',
 		byOrder: 'by order',
 		freely: 'freely',
+		approvedBy: (people: string): string => `approved by ${people}`,
+		savedBy: (name: string): string => `saved by ${name}`,
 		/** On what it was done, by what that is. */
 		subjects: {
 			alarm: (id: string): string => `alarm ${id}`,
@@ -332,6 +334,11 @@ export const history = {
 		'job-order-cancel': 'Cancelled a job order',
 		'job-order-clear': 'Cleared a job order',
 		'attach-topic': 'Attached a ROS topic',
+		'revision-approved': 'Approved a revision',
+		'revision-changes-requested': 'Asked for changes in a revision',
+		'revision-verdict-withdrawn': 'Withdrew what they had said of a revision',
+		deploy: 'Deployed a revision',
+		'undo-deployment': 'Went back to the model before',
 		'sign-in': 'Signed in',
 		'sign-out': 'Signed out',
 		'sessions-ended': 'Signed somebody out everywhere',

@@ -61,6 +61,10 @@ export const frame: Text['frame'] = {
 	takeControlFirst: 'Ta kontrollen först',
 	lookOn: (role) => `Du ser på som ${role}; en operatör agerar.`,
 	alarms: (n) => `${n} larm`,
+	waits: {
+		said: (number, name, by) => `Revision ${number}, ”${name}”, av ${by} väntar på en andra persons godkännande.`,
+		look: 'Se ändringarna'
+	},
 	undeployed: (n) => (n === 1 ? '1 ändring är inte driftsatt' : `${n} ändringar är inte driftsatta`),
 	noAlarms: 'Inga larm',
 	alarmsWhenHeard: (n) => (n === 0 ? 'Inga larm när den senast hördes' : `${n} larm när den senast hördes`),

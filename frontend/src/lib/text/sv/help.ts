@@ -136,7 +136,8 @@ export const help: Helped = {
 				'Gå vidare på annat sätt från vilket steg som helst: det blir en egen gren.',
 				'Följ planen, eller kör tills ett villkor gäller.',
 				'Eller prova i simulerad tid: låt klockan gå, ge en enhet ett fel, gå tillbaka till ett ögonblick och vidare på annat sätt.',
-				'Eller se hela tillståndsrummet: välj variabler att dela in det efter, så syns vad som är förbjudet eller inte säkert.'
+				'Eller se hela tillståndsrummet: välj variabler att dela in det efter, så syns vad som är förbjudet eller inte säkert. Bilden börjar där stationen är; den sista knappen ovanför visar alltihop.',
+				'Adressen kommer ihåg vilken av de tre som visas.'
 			]
 		},
 		begin: {
@@ -155,6 +156,7 @@ export const help: Helped = {
 				'Läs vad som blir annorlunda: varje ändring i en mening, med det som följer av den. Filer visar varje rad.',
 				'Planen för stationen som den står nu, med modellen som körs och med utkastet.',
 				'Kontroller: vad som söktes, hur lång tid det tog och vad som hittades.',
+				'Där två personer behövs: någon annan än den som sparade revisionen godkänner den, eller ber om ändringar, under Samtal. Till dess får alla som kan göra det veta det, här och på Drift.',
 				'För det till stationen: gör det som saknas i listan, driftsätt sedan.',
 				'Revisioner: se vad som skiljer, eller gå tillbaka till en. Du läser först vad det ångrar.'
 			]
