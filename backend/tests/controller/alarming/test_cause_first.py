@@ -136,7 +136,7 @@ def test_what_waited_for_a_device_that_works_again_is_no_alarm_of_its_own() -> N
     rig.faulty.start(Fault(FaultKind.STUCK, "robot"), rig.now)
     rig.run(45)
     (while_it_lasts,) = rig.shown.values()
-    assert "Smart nutrunner: “Run the nutrunner” has not finished within 30 s" in while_it_lasts.parts
+    assert "Nutrunner: “Run the nutrunner” has not finished within 30 s" in while_it_lasts.parts
     rig.faulty.clear(Clear())
     for _ in range(30):
         rig.run(1)

@@ -42,6 +42,18 @@ describe('a message', () => {
 		expect(cutOf({ id: 'found.more', arguments: { names: '`a`', count: 2 } }, EN)).toBeNull();
 	});
 
+	test('has titles as they stand within a sentence, and as one begins with them', () => {
+		const nutrunner = { words: { en: 'Nutrunner', sv: 'Mutterdragaren' } };
+		const vehicle = { words: { en: 'AGV', sv: 'AGV:n' } };
+		const dock = { words: { en: 'Tool dock', sv: 'Verktygsdockan' } };
+		expect(tell({ id: 'silent.nothing', arguments: { resource: nutrunner } }, SV)).toBe('Inget hörs från mutterdragaren');
+		expect(tell({ id: 'silent.nothing', arguments: { resource: vehicle } }, SV)).toBe('Inget hörs från AGV:n');
+		expect(tell({ id: 'still.stalled', arguments: { resource: nutrunner, values: 'a' } }, SV)).toMatch(/^Mutterdragaren har kört fast/);
+		const several = { id: 'many-silent.some', arguments: { resources: [nutrunner, vehicle, dock], count: 3, of: 8 } };
+		expect(tell(several, SV)).toBe('Mutterdragaren, AGV:n och verktygsdockan svarar inte (3 av 8 enheter)');
+		expect(tell(several, EN)).toBe('Nutrunner, AGV and Tool dock are not responding (3 of 8 devices)');
+	});
+
 	test('has the words of the model in the language that there is', () => {
 		const said = (words: Record<string, string>) => tell({ id: 'as-it-was', arguments: { text: { words } } }, SV);
 		expect(said({ en: 'Battery low', sv: 'Batteriet är lågt' })).toBe('Batteriet är lågt');
