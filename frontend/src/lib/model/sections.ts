@@ -12,7 +12,7 @@ export type Fold = FormSection | 'now';
 
 const SECTIONS: Readonly<Record<string, Readonly<Record<FormSection, readonly string[]>>>> = {
 	ability: {
-		what: ['title', 'parameters', 'duration', 'timeouts', 'restart', 'moves'],
+		what: ['title', 'parameters', 'duration', 'timeouts', 'late', 'restart', 'moves'],
 		person: ['human', 'instruction'],
 		start: ['enabled', 'start'],
 		course: ['until', 'executing', 'finished'],
