@@ -121,7 +121,7 @@ const ROBOT: readonly Added[] = [
 ];
 
 const NUTRUNNER: readonly Added[] = [
-	resource('nutrunner', 'Smart nutrunner'),
+	resource('nutrunner', 'Nutrunner'),
 	topic('nutrunner', '/nutrunner/state', 'NutrunnerState', 'in', text('Deadline', '1')),
 	topic('nutrunner', '/nutrunner/command', 'NutrunnerCommand', 'out', text('Every', '0.5')),
 	variable('Measured', 'nutrunner', 'tool_is_idle', 'bool', 'true'),
@@ -176,7 +176,7 @@ const NUTRUNNER: readonly Added[] = [
 ];
 
 const OPERATOR: readonly Added[] = [
-	resource('operator', 'Operator with watch'),
+	resource('operator', 'Operator'),
 	topic('operator', '/operator/task', 'OperatorTask', 'out', text('Every', '1')),
 	variable('Measured', 'operator', 'acknowledged', 'bool', 'false'),
 	{
@@ -208,7 +208,7 @@ const WANTED: readonly Added[] = [
 		name: 'no_standing_tool_on_placed_bolt',
 		asked: { 'What it says': 'Never one thing while another holds' },
 		fields: [
-			text('Title', 'The tool must turn before it meets a placed bolt'),
+			text('Title', 'The nutrunner must turn before it meets a placed bolt'),
 			condition('Never', 'robot.target_pose == at_bolt or robot.pose == at_bolt'),
 			condition('While', 'bolt == placed and not nutrunner.run_nut.executing')
 		]

@@ -38,7 +38,7 @@ def test_a_resource_on_wrong_indentation(model: Path) -> None:
     assert code == 2
     assert err.startswith(f"{file}:4:3: this is not YAML: this does not belong to what is above it")
     assert "look at the indentation" in err
-    change(file, "title: {en: Smart nutrunner, sv: Smart mutterdragare}\n", "title: Smart nutrunner\n")
+    change(file, "title: {en: Nutrunner, sv: Mutterdragaren}\n", "title: Nutrunner\n")
     code, _, err = command("check", model)
     assert code == 2
     assert err.startswith(f"{file}:4:9: this is not YAML: a `name:` stands here where none may")

@@ -52,7 +52,8 @@ def test_all_of_it() -> None:
         "Bolt tightening station (bolt_tightening)",
         "  ability robot.move_to_previous: Move to the previous pose, for restart mode only",
         "operation tighten_bolt_pair(bolt_pair_2): Tighten bolt pair 2, priority 1",
-        "specification no_standing_tool_on_placed_bolts(bolt_pair_1): The tool must turn before it meets placed bolts",
+        "specification no_standing_tool_on_placed_bolts(bolt_pair_1): "
+        "The nutrunner must turn before it meets placed bolts",
         "    finish within 30 s",
     ):
         assert part in out.splitlines()

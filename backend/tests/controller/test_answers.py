@@ -126,5 +126,5 @@ def test_why_there_is_no_plan_is_told_in_titles_to_people_and_in_names_to_progra
         "Robot UR10",
         "the pose of the robot",
         "bolt pair 1 is placed",
-        "The tool must turn before it meets placed bolts",
+        "The nutrunner must turn before it meets placed bolts",
     ]

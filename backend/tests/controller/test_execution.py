@@ -150,7 +150,8 @@ def test_the_next_step_says_what_it_waits_for() -> None:
     rig.tick()
     waiting = waits_for(rig.execution, "robot.move_to_position(bolt_pair_1)", feeds)
     assert waiting == [
-        "a safe start: The tool must turn before it meets placed bolts (no_standing_tool_on_placed_bolts(bolt_pair_1))"
+        "a safe start: The nutrunner must turn before it meets placed bolts "
+        "(no_standing_tool_on_placed_bolts(bolt_pair_1))"
     ]
 
 

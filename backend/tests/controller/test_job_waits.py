@@ -165,7 +165,7 @@ def test_people_are_waited_for_and_what_keeps_them() -> None:
     (id_,) = station.rig.desk.open
     station.rig.run(30)
     (waiting,) = station.waits()
-    assert waiting.endswith("to be done by Operator with watch"), waiting
+    assert waiting.endswith("to be done by Operator"), waiting
     problem = ReportProblem(actor=EVA, task=id_, revision=1, reason="no bolts")
     station.rig.desk.report(problem, Timestamp(station.rig.now, station.rig.now))
     assert station.waits() == [f"{waiting}, who cannot: no bolts"]

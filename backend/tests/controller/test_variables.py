@@ -38,8 +38,9 @@ def test_names_are_the_titles_of_the_model_in_each_language() -> None:
 def test_parts_are_called_by_their_titles_in_each_language() -> None:
     names = names_of("bolt_tightening")
     assert names.station == {"en": "Bolt tightening station", "sv": "Station för skruvdragning"}
-    assert names.resources["operator"] == {"en": "Operator with watch", "sv": "Operatör med klocka"}
-    assert "robot" not in names.resources, "it is called the same in all languages"
+    assert names.resources["operator"] == {"en": "Operator", "sv": "Operatören"}
+    assert names.resources["robot"] == {"en": "Robot UR10", "sv": "Roboten UR10"}
+    assert "robot" not in names_of("single_bolt").resources, "it is called the same in all languages"
     assert names.operations["tighten_bolt_pair(bolt_pair_1)"] == {
         "en": "Tighten bolt pair 1",
         "sv": "Dra åt skruvpar 1",
@@ -47,7 +48,7 @@ def test_parts_are_called_by_their_titles_in_each_language() -> None:
     assert names.work_masters["truck_engine"]["sv"] == "Lastbilsmotor"
     task = names.tasks["operator.place_bolt_pair(bolt_pair_2)"]
     assert task == {"en": "Place bolt pair 2 on the cover plate.", "sv": "Sätt i skruvpar 2 i täcklocket."}
-    assert all(each["sv"].startswith("Verktyget ska rotera") for each in names.specifications.values())
+    assert all(each["sv"].startswith("Mutterdragaren ska rotera") for each in names.specifications.values())
 
 
 @pytest.mark.parametrize("path", STATIONS, ids=lambda path: path.name)

@@ -78,7 +78,7 @@ def test_without_its_robot_nobody_tightens_and_the_operator_still_places() -> No
     assert nobody(view)["tighten_bolt_pair(bolt_pair_3)"] == ["Robot UR10"]
     assert not [name for name in others(view) if name.startswith("tighten")]
     placing = [by for name, (by, once) in others(view).items() if name.startswith("place") and not once]
-    assert all(by == ["Operator with watch"] for by in placing)
+    assert all(by == ["Operator"] for by in placing)
 
 
 def test_without_the_robot_of_the_truck_station_the_operator_can_take_over_the_bolts_and_nothing_else_of_it() -> None:
@@ -120,7 +120,7 @@ def test_what_it_says_comes_true_and_the_alarm_says_the_same() -> None:
     assert len([name for name in rig.completed if name.startswith(TIGHTEN)]) == len(PAIRS) - 2
     assert said.isdisjoint(rig.completed)
     text = str(Consequences(rig.execution, who_can).without({"robot"}))
-    assert "Nobody can do “Take the tool for the oil filter” without it." in text
+    assert "Nobody can do “Take the filter tool” without it." in text
 
 
 def test_an_ability_that_was_given_up_is_named() -> None:

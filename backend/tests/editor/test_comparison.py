@@ -259,7 +259,7 @@ def test_of_a_station_that_is_reset_it_is_told_how_it_stands_and_how_it_will(tmp
 def test_a_state_outside_the_safe_ones_is_refused_with_the_way_in(tmp_path: Path) -> None:
     view = fit(tmp_path, bolts(), {**AT_PAIR_1, "bolts[bolt_pair_1]": "placed"})
     assert not view.legal
-    assert view.violated == ["The tool must turn before it meets placed bolts"]
+    assert view.violated == ["The nutrunner must turn before it meets placed bolts"]
     assert view.ways
 
 

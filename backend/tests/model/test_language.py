@@ -179,6 +179,50 @@ def test_alone_an_alarm_is_raised_when_it_is_overdue(tmp_path: Path) -> None:
     assert with_change(tmp_path, ARM, FINISH, more).abilities["arm.move(out)"].timeouts == Timeouts(finish=20)
 
 
+def test_what_it_means_that_it_is_late(tmp_path: Path) -> None:
+    """With what the parameters are called, and variables by their full names; of other languages too."""
+    more = """\
+    timeouts: {react: 1, finish: 20}
+    late:
+      not_begun: The arm does not leave for {position}
+      not_finished: {en: "It is at {pose}, not at {position}", sv: "Den är vid {arm.pose}"}
+"""
+    late = with_change(tmp_path, ARM, FINISH, FINISH + more).abilities["arm.move(out)"].late
+    assert late.not_begun == {"": "The arm does not leave for out"}
+    assert late.not_finished == {"en": "It is at {arm.pose}, not at out", "sv": "Den är vid {arm.pose}"}
+
+
+@pytest.mark.parametrize(
+    ("late", "message"),
+    [
+        (
+            '{not_finished: "It is at {‹poes}"}',
+            "`{poes}` stands for no parameter and no variable; did you mean `pose`?",
+        ),
+        (
+            '{not_finished: {en: "To {position}", sv: "Till {‹postion}"}}',
+            "`{postion}` stands for no parameter and no variable; did you mean `position`?",
+        ),
+        ('{not_finished: "It {‹move.finished}"}', "`{move.finished}` stands for no parameter and no variable"),
+    ],
+)
+def test_what_is_wrong_in_what_is_said_of_it(tmp_path: Path, late: str, message: str) -> None:
+    """With the line and the column of the word."""
+    station = copy_of_cell(tmp_path)
+    line = f"    late: {late}"
+    replace(station, ARM, FINISH, f"{FINISH}    timeouts: {{finish: 3}}\n{line.replace('‹', '')}\n")
+    row = (station / ARM).read_text(encoding="utf-8").split("\n").index(line.replace("‹", "")) + 1
+    found = [each.partition("resources/arm.yaml:")[2] for each in findings(station)]
+    assert any(each.startswith(f"{row}:{line.index('‹') + 1}: {message}") for each in found), found
+
+
+def test_what_is_never_late_has_no_words_for_it(tmp_path: Path) -> None:
+    station = copy_of_cell(tmp_path)
+    replace(station, ARM, FINISH, f"{FINISH}    timeouts: {{finish: 3}}\n    late: {{not_begun: It stays}}\n")
+    wanted = "`late.not_begun` needs a `timeouts.react`: without one it is never late"
+    assert any(each.endswith(wanted) for each in findings(station))
+
+
 def test_an_operation_that_does_not_repeat(tmp_path: Path) -> None:
     operations = with_change(tmp_path, OPERATIONS, "fetch:", "fetch:\n  repeat: false").operations.values()
     assert {operation.repeat for operation in operations} == {False}

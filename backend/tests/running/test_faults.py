@@ -15,7 +15,7 @@ def test_a_robot_that_is_stuck_is_not_blamed_on_the_end_effector_that_feels_the_
         alarms = person.get("alarms")["alarms"]
         assert [key for key, alarm in alarms.items() if alarm["priority"] != "low"] == ["still:robot"]
         parts = alarms["still:robot"]["parts"]
-        assert any(part.startswith("End-effector of the robot reports end_effector.tool == LFTOOL") for part in parts)
+        assert any(part.startswith("End-effector reports end_effector.tool == LFTOOL") for part in parts)
         first, *others = seen.advice["offers"]
         assert {each["name"]: each["then"] for each in first["physical"]}["robot.pose"] == TOOL
         for offer in others:

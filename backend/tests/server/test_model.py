@@ -360,7 +360,7 @@ def test_the_picture_of_the_draft_is_drawn_as_that_of_the_station(eva: httpx.Cli
     files = read(eva)["files"]
     assert (found["number"], found["digest"]) == (read(eva)["number"], files["mimic.yaml"]["digest"])
     assert (found["picture"]["made_from"], found["file"]) == ("file", None)
-    assert found["titles"]["nutrunner"] == "Smart nutrunner"
+    assert found["titles"]["nutrunner"] == "Nutrunner"
     at = {"kind": "set", "file": "mimic.yaml", "path": ["symbols", "nutrunner", "at", 0], "was": 24, "value": 28}
     made(eva, at, {**at, "path": ["symbols", "nutrunner", "resource"], "was": "nutrunner", "value": "nutruner"})
     picture = read(eva, "/mimic")["picture"]

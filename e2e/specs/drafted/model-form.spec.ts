@@ -35,7 +35,7 @@ test('the form of each ability fits a screen, and folded sections tell what is i
 	}
 
 	await page.goto(at('robot', 'move_to_position'));
-	await expect(section(page, 'what').locator('.told')).toHaveText('Move to {position} · Parameters: position named_pose · 2 – 3 s · Time limits: Must have reacted within 2, Finish 30');
+	await expect(section(page, 'what').locator('.told')).toHaveText('Move to {position} · Parameters: position named_pose · 2 – 3 s · Time limits: Must have reacted within 2, Finish 30 · What is wrong when it is late: The robot does not move off, The robot is not {target_pose} yet');
 	await expect(section(page, 'course').locator('.told')).toHaveText('target_pose == position and pose != position');
 	await expect(field(page, 'executing')).toBeHidden();
 	expect(await findings(page)).toEqual([]);

@@ -87,8 +87,8 @@ test.describe('a station that works', () => {
 			const supervised = region(operate, 'The supervisor adds');
 			await operate.getByText('Automaton', { exact: true }).click();
 			await expect(supervised).toHaveAttribute('data-allowed', 'false');
-			await expect(supervised).toContainText('The tool must turn before it meets placed bolts');
-			await expect(operate.getByTestId('hindrance')).toContainText('The tool must turn before it meets placed bolts');
+			await expect(supervised).toContainText('The nutrunner must turn before it meets placed bolts');
+			await expect(operate.getByTestId('hindrance')).toContainText('The nutrunner must turn before it meets placed bolts');
 			await expect(press(operate)).toHaveAttribute('aria-disabled', 'true');
 			const problem = await operate.evaluate(async (ability) => {
 				const headers = { 'Content-Type': 'application/json' };
@@ -96,7 +96,7 @@ test.describe('a station that works', () => {
 				return { status: answer.status, ...((await answer.json()) as { type: string; detail: string }) };
 			}, moveTo(pair));
 			expect(problem).toMatchObject({ status: 409, type: '/problems/not-startable' });
-			expect(problem.detail).toContain('because of: The tool must turn before it meets placed bolts');
+			expect(problem.detail).toContain('because of: The nutrunner must turn before it meets placed bolts');
 		});
 
 		await test.step('the table says the same, and nobody is kept from it', async () => {

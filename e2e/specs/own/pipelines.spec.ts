@@ -339,7 +339,7 @@ test('a topic of the network is added to a resource @long', async ({ browse, sta
 	await page.getByRole('button', { name: 'Add a topic…' }).click();
 	await dialog(page).getByLabel('Search').fill('operator');
 	await dialog(page).getByRole('radio', { name: '/operator/task' }).check();
-	await dialog(page).getByLabel('Resource that it belongs to').selectOption({ label: 'Operator with watch' });
+	await dialog(page).getByLabel('Resource that it belongs to').selectOption({ label: 'Operator' });
 	await dialog(page).getByLabel('Direction').selectOption('out');
 	await dialog(page).getByRole('button', { name: 'Add', exact: true }).click();
 	await expect(page.getByRole('heading', { name: '/operator/task' }).first()).toBeVisible({ timeout: 60_000 });

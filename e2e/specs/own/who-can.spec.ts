@@ -7,7 +7,7 @@ import type { Page } from '@playwright/test';
 test.use({ shared: null, copied: 'truck_engine_station' });
 
 const ROBOT = 'Robot UR10';
-const OPERATOR = 'Operator with watch';
+const OPERATOR = 'Operator';
 
 const group = (page: Page, name: 'nobody' | 'others') => page.getByTestId('who-can').locator(`[data-group="${name}"]`);
 

@@ -27,7 +27,7 @@ test('a bolt pair is tightened with a paired watch, and the journal names who di
 		await expect(watches.getByText('127.0.0.1').first()).toBeVisible();
 		await expect(done(watch)).toHaveCount(0);
 		await watches.getByRole('button', { name: 'Confirm' }).click();
-		await expect(watches.locator(`[data-watch="${WATCH}"]`)).toContainText('Operator with watch');
+		await expect(watches.locator(`[data-watch="${WATCH}"]`)).toContainText('Operator');
 		return code;
 	});
 

@@ -10,7 +10,7 @@ const SOON = { timeout: 2000 };
 const STATION = 'Bolt tightening';
 
 /** What belongs to the station: its devices, its work, how it is. */
-const WITHIN = ['Robot UR10', 'Smart nutrunner', 'Place bolt pair', 'Automatic', 'No alarms'];
+const WITHIN = ['Robot UR10', 'Nutrunner', 'Place bolt pair', 'Automatic', 'No alarms'];
 
 /** Of the station its title is on the page, below the picture and where one signs in, and nothing else. */
 async function expectEmpty(page: Page): Promise<void> {

@@ -97,7 +97,7 @@ test('on a small screen what has no room in the picture stands in rows', async (
 	for (const width of [390, 320]) {
 		await operate.setViewportSize({ width, height: 800 });
 		const row = picture(operate).locator('button[data-symbol="nutrunner"]');
-		await expect(row).toContainText('Smart nutrunner');
+		await expect(row).toContainText('Nutrunner');
 		await expect(picture(operate).locator('[role="button"][data-symbol="cover_plate"]')).toBeVisible();
 		expect(await overflow(operate)).toBe(0);
 		expect(await findings(operate)).toEqual([]);

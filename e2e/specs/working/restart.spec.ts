@@ -289,7 +289,7 @@ const FAULTS: readonly Fault[] = [
 			await turnsSlowly(at);
 			await at.station.fault('nutrunner offline');
 		},
-		alarm: /Nothing heard from Smart nutrunner/,
+		alarm: /Nothing heard from Nutrunner/,
 		hands: clear,
 		asks: []
 	},

@@ -50,11 +50,11 @@ test('the draft is tried in simulated time: on, back, otherwise, with faults, an
 		await moment.press('ArrowLeft');
 		await moment.press('ArrowLeft');
 		await expect(time).toContainText('What you do now is done here');
-		await main.getByRole('combobox', { name: 'Device' }).selectOption({ label: 'Smart nutrunner' });
+		await main.getByRole('combobox', { name: 'Device' }).selectOption({ label: 'Nutrunner' });
 		await main.getByRole('button', { name: 'Says nothing' }).click();
-		await expect(main.getByRole('list', { name: 'Faults' })).toContainText('Smart nutrunner says nothing', SIMULATED);
+		await expect(main.getByRole('list', { name: 'Faults' })).toContainText('Nutrunner says nothing', SIMULATED);
 		expect(await seconds()).toBeLessThan(end);
-		await main.getByRole('button', { name: 'End it: Smart nutrunner says nothing' }).click();
+		await main.getByRole('button', { name: 'End it: Nutrunner says nothing' }).click();
 		await expect(main.getByRole('list', { name: 'Faults' })).toHaveCount(0, SIMULATED);
 	});
 

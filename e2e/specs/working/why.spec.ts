@@ -32,7 +32,7 @@ test('a condition is followed from an operation down to the person who can chang
 	await expect(place).toContainText('which runs');
 	await open(place);
 	await expect(place.locator('[data-about="finish"] li[data-holds="true"]').first()).toContainText('✓');
-	await expect(place.locator('[data-changer="task"]')).toContainText('Operator with watch');
+	await expect(place.locator('[data-changer="task"]')).toContainText('Operator');
 	const from = place.locator('[data-from="operator.acknowledged"]');
 	await open(from);
 	await expect(from).toContainText('No message tells it: somebody acknowledges');

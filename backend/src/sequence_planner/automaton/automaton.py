@@ -96,6 +96,15 @@ class Timeouts(Immutable):
     replan: bool = False
 
 
+class LateTexts(Immutable):
+    """What it means that an ability has not begun, or not finished, in time: by language, with the full names of
+    variables in braces where their values stand.
+    """
+
+    not_begun: Mapping[str, str] = {}
+    not_finished: Mapping[str, str] = {}
+
+
 class Ability(Immutable):
     """A ground ability. `finish_guard` is None when it is done at its start.
 
@@ -120,6 +129,7 @@ class Ability(Immutable):
     cancel_actions: tuple[Assignment, ...] = ()
     instruction: Instruction | None = uncompared(default=None)
     moves: bool = uncompared(default=True)
+    late: LateTexts = uncompared(default=LateTexts())
 
     def flag(self, which: str) -> str:
         """The full name of its flag `enabled`, `executing` or `finished`."""

@@ -267,6 +267,16 @@ class TimeoutsDocument(DocumentPart):
         return self
 
 
+class LateDocument(DocumentPart):
+    """What is wrong when an ability is late, as a person would say it: what its alarm says first."""
+
+    not_begun: Given[Words] = None
+    """When it has not reacted by `timeouts.react`; `{parameter}` and `{variable}` are replaced by what their values are
+    called."""
+    not_finished: Given[Words] = None
+    """When it has not finished by `timeouts.finish`; `{parameter}` and `{variable}` likewise."""
+
+
 class AbilityDocument(DocumentPart):
     """An ability of a resource. `duration` estimates in seconds how long a run takes."""
 
@@ -284,6 +294,8 @@ class AbilityDocument(DocumentPart):
     """How it is done, for the person who does it."""
     timeouts: TimeoutsDocument = TimeoutsDocument()
     """By when it must have reacted and finished, and what is done when it has not."""
+    late: LateDocument = LateDocument()
+    """What is wrong when it has not, in words for people."""
     duration: Given[Duration] = None
     """Seconds that a run is estimated to take, or the fewest and the most."""
     enabled: Predicate = True
@@ -310,6 +322,13 @@ class AbilityDocument(DocumentPart):
             raise ValueError(message("form.timeouts"))
         if self.until is None and self.finish is not None and "when" not in self.finish.model_fields_set:
             raise ValueError(message("form.finish"))
+        return self
+
+    @model_validator(mode="after")
+    def _can_be_late(self) -> AbilityDocument:
+        for text, limit in (("not_begun", "react"), ("not_finished", "finish")):
+            if getattr(self.late, text) is not None and getattr(self.timeouts, limit) is None:
+                raise ValueError(message("form.never-late", text=text, limit=limit))
         return self
 
     @model_validator(mode="after")

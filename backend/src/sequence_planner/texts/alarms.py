@@ -55,11 +55,13 @@ ALARMS: Final[dict[str, str]] = {
     ),
     **_kind(
         "overdue",
-        "{resource}: “{ability}” {late}",
-        "{resource}: “{ability}” {late_past}",
+        "{what}",
+        "{what_past}",
         "{consequence}",
         "{action}",
     ),
+    "late.run": "{resource}: “{ability}” {late}",
+    "late.named": "{words^}. {run^}",  # in the words of the model
     "late.begun": "has not begun within {seconds} s",
     "late.finished": "has not finished within {seconds} s",
     "late.begun-past": "did not begin within {seconds} s",

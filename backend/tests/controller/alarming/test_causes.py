@@ -20,7 +20,7 @@ from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.state import LastOperatorPlan, OutOfService
 from sequence_planner.execution.vocabulary import Mode, PlanStatus, ServiceKind
 from sequence_planner.planning.problem import PlanAnswer, Verdict
-from sequence_planner.texts.message import as_it_was, message
+from sequence_planner.texts.message import Message, Wording, as_it_was, message
 from support.simulated import Rig, never
 
 
@@ -85,8 +85,8 @@ def test_an_ability_that_does_not_begin_in_time_is_noticed() -> None:
     late = "overdue:nutrunner.run_nut"
     assert late not in shown.current(Timestamp(rig.now + 4, rig.now + 4))
     told = shown.current(Timestamp(rig.now + 6, rig.now + 6))[late]
-    assert told.text == "Smart nutrunner: “Run the nutrunner” has not begun within 5 s"
-    assert told.consequence == "“Tighten bolt pair 3” waits for Smart nutrunner."
+    assert told.text == "The nutrunner does not start. Nutrunner: “Run the nutrunner” has not begun within 5 s"
+    assert told.consequence == "“Tighten bolt pair 3” waits for Nutrunner."
 
     assert rig.run(5, until=lambda: rig.value("nutrunner.run_nut.executing") is True)
     told = shown.current(Timestamp(rig.now + 6, rig.now + 6))[late]
@@ -94,7 +94,33 @@ def test_an_ability_that_does_not_begin_in_time_is_noticed() -> None:
     both = shown.current(Timestamp(rig.now + 29.8, rig.now + 29.8))  # nor has the robot moved, for which the tool waits
     (robot,) = (alarm for key, alarm in both.items() if key.startswith("overdue:robot") and alarm.ended is None)
     assert robot.state is AlarmState.UNACKNOWLEDGED
-    assert any(part.startswith("Smart nutrunner: “Run the nutrunner” has not finished within ") for part in robot.parts)
+    late_too = "No torque with the robot between its poses. Nutrunner: “Run the nutrunner” has not finished within "
+    assert any(part.startswith(late_too) for part in robot.parts), robot.parts
+
+
+def test_the_model_says_first_what_it_means_that_an_ability_is_late() -> None:
+    """With what values are called in each language; where one is not known, it is told as of every ability."""
+    rig = Rig()
+    rig.start_production()
+    shown = alarms(rig)
+    assert rig.run(60, until=lambda: rig.value("nutrunner.run_nut.executing") is True)
+    key, late = "overdue:nutrunner.run_nut", Timestamp(rig.now + 31, rig.now + 31)
+    run = "Nutrunner: “Run the nutrunner” has not finished within 30 s"
+    (told,) = (each for each in shown.abilities.causes(late) if each.key == key)
+    assert str(told.text) == f"No torque with the robot between its poses. {run}"
+    assert str(told.past) == "Nutrunner: “Run the nutrunner” did not finish within 30 s"
+    named = told.text.arguments["what"]
+    assert isinstance(named, Message)
+    words = named.arguments["words"]
+    assert isinstance(words, Wording)
+    assert words.words == {
+        "en": "No torque with the robot between its poses",
+        "sv": "Inget moment med roboten mellan sina lägen",
+    }
+
+    rig.execution.state = {**rig.execution.state, "robot.pose": None}
+    (told,) = (each for each in shown.abilities.causes(late) if each.key == key)
+    assert str(told.text) == run
 
 
 def test_a_specification_that_is_broken_for_certain_is_an_alarm_whatever_else_is_unknown() -> None:
@@ -109,7 +135,7 @@ def test_a_specification_that_is_broken_for_certain_is_an_alarm_whatever_else_is
         "robot.target_pose": "bolt_pair_1",
         "nutrunner.run_nut.executing": False,
     }
-    assert "The tool must turn before it meets placed bolts" in shown.current(now)["unsafe-state"].text
+    assert "The nutrunner must turn before it meets placed bolts" in shown.current(now)["unsafe-state"].text
 
 
 def test_what_cannot_be_recorded_is_one_alarm_whoever_notices() -> None:
@@ -282,9 +308,7 @@ def test_a_problem_with_a_task_is_told_with_who_has_it_and_what_waits_for_it() -
     alarm = shown.current(now)[f"problem:{task.id}"]
     assert (alarm.priority, alarm.state) == (Priority.MEDIUM, AlarmState.UNACKNOWLEDGED)
     assert alarm.text == f"Eva has a problem with “{task.title}”: no bolts"
-    assert alarm.consequence.endswith("wait for Operator with watch.") or alarm.consequence.endswith(
-        "waits for Operator with watch."
-    )
+    assert alarm.consequence.endswith("wait for Operator.") or alarm.consequence.endswith("waits for Operator.")
     rig.desk.problems = {task.id: TaskProblem("Eva", rig.now, "", ProblemKind.MISSING)}
     assert shown.current(now)[f"problem:{task.id}"].text.endswith("”: a part is missing")
     rig.desk.problems = {task.id: TaskProblem("Eva", rig.now, "the left one", ProblemKind.DAMAGED)}

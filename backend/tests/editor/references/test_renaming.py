@@ -23,6 +23,24 @@ def messages(tmp_path_factory: pytest.TempPathFactory) -> MessageRegistry:
     return messages_of(folder)
 
 
+def test_variables_in_what_is_said_of_a_late_ability_are_renamed() -> None:
+    """Where it is of the resource and where of another; a parameter of the same name is none of them."""
+    arm = """\
+measured:
+  pose: {type: pose}
+abilities:
+  move:
+    parameters: {where: pose}
+    timeouts: {finish: 3}
+    late: {not_finished: {en: "{pose}, not {where}; {lamp.pose}", sv: "{arm.pose}"}}
+"""
+    station = {"resources/arm.yaml": arm, "resources/lamp.yaml": "measured:\n  pose: {type: bool}\n"}
+    new = renamed(station, parse_part("variable:arm.pose"), "place")["resources/arm.yaml"]
+    assert new == arm.replace("  pose: {", "  place: {").replace('"{pose}', '"{place}').replace(
+        "{arm.pose}", "{arm.place}"
+    )
+
+
 def test_only_the_names_change() -> None:
     text = """\
 # of the whole

@@ -24,6 +24,7 @@ describe('the sections of a form', () => {
 		expect(told([['enabled', 'a and\n  b'], ['start', { when: 'c', do: ['d := e', 'f := g'] }]])).toBe('a and b · WHEN c, d := e, f := g');
 		expect(told([['enabled', true], ['restart', true], ['moves', false], ['until', undefined]])).toBe('ENABLED · RESTART · MOVES: false');
 		expect(told([['human', { task: { en: 'Take it.', sv: 'Ta den.' }, acknowledgement: 'done' }]])).toBe('Take it., ACKNOWLEDGEMENT done');
+		expect(told([['late', { not_begun: { en: 'It stays.', sv: 'Den står.' }, not_finished: 'It is slow.' }]])).toBe('LATE: It stays., It is slow.');
 		expect(told([['duration', 3], ['title', '']])).toBe('3');
 	});
 });

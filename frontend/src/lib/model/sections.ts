@@ -12,7 +12,7 @@ export type Fold = FormSection | 'now';
 
 const SECTIONS: Readonly<Record<string, Readonly<Record<FormSection, readonly string[]>>>> = {
 	ability: {
-		what: ['title', 'parameters', 'duration', 'timeouts', 'restart', 'moves'],
+		what: ['title', 'parameters', 'duration', 'timeouts', 'late', 'restart', 'moves'],
 		person: ['human', 'instruction'],
 		start: ['enabled', 'start'],
 		course: ['until', 'executing', 'finished'],
@@ -23,6 +23,8 @@ const SECTIONS: Readonly<Record<string, Readonly<Record<FormSection, readonly st
 export const FLAT: readonly string[] = ['timeouts', 'start', 'finish', 'cancel'];
 /** Those that are called as their section is. */
 const NAMED: readonly string[] = ['start', 'finish', 'human'];
+/** Entries of fields that speak for themselves. */
+const SPEAKS: readonly string[] = ['do', 'task', 'text', 'not_begun', 'not_finished'];
 /** What is open at first. */
 export const FIRST: readonly Fold[] = ['start'];
 
@@ -58,5 +60,5 @@ export function toldFields(
 /** One entry of a part: actions speak for themselves, texts by language are told in one. */
 function told(name: string, value: Json, label: (key: string) => string, language: string): string {
 	const text = (isMapping(value) ? titleAt(value, [], language) : null) ?? toldValue(value);
-	return name === 'do' || name === 'task' || name === 'text' ? text : `${label(name)} ${text}`;
+	return SPEAKS.includes(name) ? text : `${label(name)} ${text}`;
 }

@@ -4,13 +4,13 @@ import { nextText, progressIn, stateText, toneOf } from './standing.ts';
 test('what is most in the way is said of the station: that it stands, then what is not heard, then what needs help', () => {
 	expect(stateText('working', [], [])).toBe('');
 	expect(stateText('working', [], ['Robot UR10'])).toBe('Needs help: Robot UR10');
-	expect(stateText('silent', ['Smart nutrunner'], ['Robot UR10'])).toBe('No contact: Smart nutrunner');
-	expect(stateText('held', ['Smart nutrunner'], ['Robot UR10'])).toBe('Held: keep clear');
+	expect(stateText('silent', ['Nutrunner'], ['Robot UR10'])).toBe('No contact: Nutrunner');
+	expect(stateText('held', ['Nutrunner'], ['Robot UR10'])).toBe('Held: keep clear');
 });
 
 test('what wants help is told from what wants distance, and from what is as it should be', () => {
 	expect(toneOf('working', [], [])).toBe('plain');
-	for (const [silent, failing] of [[['Smart nutrunner'], []], [[], ['Robot UR10']]] as const)
+	for (const [silent, failing] of [[['Nutrunner'], []], [[], ['Robot UR10']]] as const)
 		expect(toneOf('working', silent, failing)).toBe('medium');
 	expect(toneOf('stopped', [], [])).toBe('high');
 	// It looks as the alarm that names it does on the other pages.

@@ -4,7 +4,7 @@ import refusals from '#lib/text/en/front.json';
 import messages from '#lib/text/en/messages.json';
 import { sv } from '#lib/text/sv.ts';
 import { alarm } from '#lib/testing/view.ts';
-import { cutOf, tell, told, toldAll, toldHere, wordsOf } from './message.ts';
+import { cutOf, leading, tell, told, toldAll, toldHere, wordsOf } from './message.ts';
 import { tellTitles } from '#lib/wording/titled.svelte.ts';
 
 const EN = { texts: { ...refusals, ...messages, ...findings }, language: 'en' };
@@ -40,6 +40,28 @@ describe('a message', () => {
 		expect(cut?.whole).toContain('of `a`, `b`, `c`, `d` it is not known');
 		expect(cutOf(waiting('Paint'), EN)).toBeNull();
 		expect(cutOf({ id: 'found.more', arguments: { names: '`a`', count: 2 } }, EN)).toBeNull();
+	});
+
+	test('has titles as they stand within a sentence, and as one begins with them', () => {
+		const nutrunner = { words: { en: 'Nutrunner', sv: 'Mutterdragaren' } };
+		const vehicle = { words: { en: 'AGV', sv: 'AGV:n' } };
+		const dock = { words: { en: 'Tool dock', sv: 'Verktygsdockan' } };
+		expect(tell({ id: 'silent.nothing', arguments: { resource: nutrunner } }, SV)).toBe('Inget hörs från mutterdragaren');
+		expect(tell({ id: 'silent.nothing', arguments: { resource: vehicle } }, SV)).toBe('Inget hörs från AGV:n');
+		expect(tell({ id: 'still.stalled', arguments: { resource: nutrunner, values: 'a' } }, SV)).toMatch(/^Mutterdragaren har kört fast/);
+		const several = { id: 'many-silent.some', arguments: { resources: [nutrunner, vehicle, dock], count: 3, of: 8 } };
+		expect(tell(several, SV)).toBe('Mutterdragaren, AGV:n och verktygsdockan svarar inte (3 av 8 enheter)');
+		expect(tell(several, EN)).toBe('Nutrunner, AGV and Tool dock are not responding (3 of 8 devices)');
+	});
+
+	test('says first what the model says of it', () => {
+		const late = { id: 'late.finished', arguments: { seconds: 40 } };
+		const resource = { words: { en: 'Nutrunner', sv: 'Mutterdragaren' } };
+		const run = { id: 'late.run', arguments: { resource, ability: 'Run', late } };
+		const words = { words: { en: 'the nutrunner does not lock', sv: 'mutterdragaren låser inte fast' } };
+		const named = { id: 'overdue.text', arguments: { what: { id: 'late.named', arguments: { words, run } } } };
+		expect(leading(tell(named, EN) ?? '')).toEqual(['The nutrunner does not lock', 'Nutrunner: “Run” has not finished within 40 s']);
+		expect(leading(tell(named, SV) ?? '')).toEqual(['Mutterdragaren låser inte fast', 'Mutterdragaren: ”Run” har inte blivit klar inom 40 s']);
 	});
 
 	test('has the words of the model in the language that there is', () => {

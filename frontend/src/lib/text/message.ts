@@ -1,10 +1,14 @@
 /** What is said of a station in the language of the page, made of the messages with which the controller tells it. */
 import type { Alarm, Argument, Item, Message } from '#lib/contract.ts';
 import { language, say } from '#lib/text/text.svelte.ts';
+import { capital, withinSentence } from '#lib/wording/capital.ts';
 import { titledAlone } from '#lib/wording/titled.svelte.ts';
 
-/** `{name}`, `{name|waits|wait}` for what is said of one and of several, or `{name^}` where a sentence begins with it. */
-const PLACE = /\{(\w+)(?:\|([^|}]*)\|([^|}]*))?(\^)?\}/g;
+/**
+ * `{name}`, `{name|waits|wait}` for what is said of one and of several, `{name^}` where a sentence begins with it, or `{name~}` for
+ * titles that stand within one: “Inget hörs från mutterdragaren”, whose title is “Mutterdragaren”. `{name~^}` is a list that begins one.
+ */
+const PLACE = /\{(\w+)(?:\|([^|}]*)\|([^|}]*))?(~)?(\^)?\}/g;
 /** Of a list so many are named, and the others counted. */
 const NAMED = 3;
 
@@ -94,7 +98,7 @@ export function tell({ id, arguments: given }: Message, catalogue: Catalogue): s
 	const text = catalogue.texts[id];
 	if (text === undefined) return null;
 	let whole = true;
-	const said = text.replace(PLACE, (_, name: string, one?: string, several?: string, begins?: string) => {
+	const said = text.replace(PLACE, (_, name: string, one?: string, several?: string, within?: string, begins?: string) => {
 		const argument = given?.[name];
 		// A text of another version: the page knows its places and not what stands in them.
 		if (argument === undefined) {
@@ -102,9 +106,9 @@ export function tell({ id, arguments: given }: Message, catalogue: Catalogue): s
 			return '';
 		}
 		if (one !== undefined && several !== undefined) return isOne(argument) ? one : several;
-		const word = worded(argument, catalogue);
+		const word = worded(argument, catalogue, within !== undefined);
 		whole &&= word !== null;
-		return begins && word ? word.charAt(0).toUpperCase() + word.slice(1) : (word ?? '');
+		return begins && word ? capital(word) : (word ?? '');
 	});
 	return whole ? said : null;
 }
@@ -113,11 +117,16 @@ function isOne(argument: Argument): boolean {
 	return argument === 1 || (Array.isArray(argument) && argument.length === 1);
 }
 
-function worded(argument: Argument, catalogue: Catalogue): string | null {
+function worded(argument: Argument, catalogue: Catalogue, within = false): string | null {
+	if (Array.isArray(argument)) return listed(argument, catalogue, within);
+	const word = wordedAlone(argument, catalogue);
+	return within && word !== null ? withinSentence(word) : word;
+}
+
+function wordedAlone(argument: Item, catalogue: Catalogue): string | null {
 	if (typeof argument === 'string') return recorded(argument);
 	// `4.9`, in Swedish `4,9`.
 	if (typeof argument === 'number') return new Intl.NumberFormat(catalogue.language, { useGrouping: false, maximumFractionDigits: 12 }).format(argument);
-	if (Array.isArray(argument)) return listed(argument, catalogue);
 	if ('words' in argument) return argument.words[catalogue.language] ?? argument.words['en'] ?? Object.values(argument.words)[0] ?? '';
 	return tell(argument, catalogue);
 }
@@ -128,8 +137,8 @@ function recorded(text: string): string {
 	return alone === text && text.includes(', ') ? text.split(', ').map(titledAlone).join(', ') : alone;
 }
 
-function listed(every: readonly Item[], catalogue: Catalogue): string | null {
-	let words = every.map((each) => worded(each, catalogue));
+function listed(every: readonly Item[], catalogue: Catalogue, within: boolean): string | null {
+	let words = every.map((each) => worded(each, catalogue, within));
 	if (words.includes(null)) return null;
 	if (words.length > NAMED + 1)
 		words = [...words.slice(0, NAMED), tell({ id: 'list.more', arguments: { count: words.length - NAMED } }, catalogue)];

@@ -2,20 +2,30 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from functools import partial
 
-from sequence_planner.automaton.automaton import Ability, Effect, HumanTask, Instruction, Kind, Timeouts, commanded
+from sequence_planner.automaton.automaton import (
+    Ability,
+    Effect,
+    HumanTask,
+    Instruction,
+    Kind,
+    LateTexts,
+    Timeouts,
+    commanded,
+)
 from sequence_planner.automaton.declarations import FLAGS, Declarations, GroundAbility, GroundBefore
 from sequence_planner.automaton.findings import Binding, Findings, instance_name, readable, title_of, with_values
 from sequence_planner.automaton.grounding.meaning import Meaning, Writing, observable_condition
 from sequence_planner.language.names.scope import NameScope
 from sequence_planner.language.names.suggestions import suggestion
 from sequence_planner.language.simplifier import simplify
-from sequence_planner.language.syntax import TRUE, Assignment, Expression, Not, conjunction, conjuncts, variables
+from sequence_planner.language.syntax import TRUE, Assignment, Expression, Not, Span, conjunction, conjuncts, variables
 from sequence_planner.language.types import BOOLEAN, Place
 from sequence_planner.model.documents import AbilityDocument, EffectDocument, InstructionDocument, TimeoutsDocument
-from sequence_planner.model.fields import by_language
+from sequence_planner.model.fields import Words, by_language
 from sequence_planner.model.source import SourceText
 from sequence_planner.texts.message import message
 
@@ -24,6 +34,8 @@ START = Writing("start", _COMMANDS)
 FINISH = Writing("finish", _COMMANDS)
 CANCEL = Writing("cancel", _COMMANDS)
 EFFECT = Writing("effect", (Kind.MEASURED,))
+_TOLD = (Kind.MEASURED, Kind.OUTPUT, Kind.ESTIMATED)  # whose values can stand in a text for people
+_IN_BRACES = re.compile(r"\{([^{}]*)\}")
 
 
 def ground_abilities(
@@ -113,6 +125,10 @@ def _ability(
         cancel_actions=meaning.actions(cancelled, scope, TRUE, CANCEL),
         instruction=_instruction(meaning, document.instruction, binding),
         moves=document.moves,
+        late=LateTexts(
+            _with_variables(meaning, resource, document.late.not_begun, binding),
+            _with_variables(meaning, resource, document.late.not_finished, binding),
+        ),
     )
 
 
@@ -160,6 +176,30 @@ def _instruction(meaning: Meaning, document: InstructionDocument | None, binding
         document.image and with_values(document.image, binding),
         document.video and with_values(document.video, binding),
     )
+
+
+def _with_variables(meaning: Meaning, resource: str, text: Words | None, binding: Binding) -> dict[str, str]:
+    """A text with parameters and variables in braces, by language: what the parameters are called, and the full names
+    of the variables, of which those of the resource come first. What is neither is noted.
+    """
+    known = {name: each for name, each in meaning.declarations.variables.items() if each.kind in _TOLD}
+    found: dict[str, str] = {}
+    for language, said in by_language(text).items():
+        told = readable(said, "", binding, meaning.declarations.titles, language or "en")
+        for match in _IN_BRACES.finditer(said):
+            if match[1] in binding:
+                continue
+            full = next((each for each in (f"{resource}.{match[1]}", match[1]) if each in known), None)
+            if full is None:
+                own = (each.removeprefix(f"{resource}.") for each in known)
+                near = suggestion(match[1], [*binding, *own])
+                meaning.findings.add_within(
+                    said, Span(*match.span(1)), message("wrong.no-value-in-text", text=match[0], hint=near)
+                )
+            else:
+                told = told.replace(match[0], f"{{{full}}}")
+        found[language] = told
+    return found
 
 
 def check_acknowledgement(meaning: Meaning, resource: str, text: SourceText) -> None:

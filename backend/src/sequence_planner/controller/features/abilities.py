@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Iterator
+from typing import Final
 
 from sequence_planner.automaton.automaton import Ability
 from sequence_planner.automaton.dependencies import is_along
@@ -17,8 +19,11 @@ from sequence_planner.execution.events import TickOutcome
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.timeouts import in_the_past, overdue
 from sequence_planner.execution.vocabulary import ServiceKind
+from sequence_planner.language.shorthand.titles import Words
 from sequence_planner.language.syntax import variables
-from sequence_planner.texts.message import Argument, as_it_was, message
+from sequence_planner.texts.message import Argument, Wording, as_it_was, message
+
+_IN_BRACES: Final = re.compile(r"\{([^{}]*)\}")
 
 
 class Abilities:
@@ -83,13 +88,14 @@ class Abilities:
             resource = automaton.resources[ability.resource]
             others = self._failures(self._still.keeping(ability, monotonic))
             what = "late.finished" if late.begun else "late.begun"
+            run = {"resource": resource, "ability": ability.title}
+            told = message("late.run", **run, late=message(what, seconds=late.within))
+            words = self._with_values(ability.late.not_finished if late.begun else ability.late.not_begun)
             yield OVERDUE.cause(
                 ability.name,
                 {
-                    "resource": resource,
-                    "ability": ability.title,
-                    "late": message(what, seconds=late.within),
-                    "late_past": message(f"{what}-past", seconds=late.within),
+                    "what": told if words is None else message("late.named", words=words, run=told),
+                    "what_past": message("late.run", **run, late=message(f"{what}-past", seconds=late.within)),
                     "consequence": self._consequences.waiting_for(ability.resource),
                     "action": message("late.check", resources=[resource])
                     if late.begun
@@ -101,6 +107,19 @@ class Abilities:
                 waits=not self._still.has_to_act(ability),
                 phase=what,
             )
+
+    def _with_values(self, text: Words) -> Wording | None:
+        """A text of the model with what the values of the variables in it are called; None without one, and while a
+        value is unknown.
+        """
+        state, sentences = self._execution.state, sentences_of(self._execution.automaton)
+        told = dict(text) if "" not in text else {"en": text[""], "sv": text[""]}
+        for name in {match[1] for each in told.values() for match in _IN_BRACES.finditer(each)}:
+            if (value := state[name]) is None:
+                return None
+            called = sentences.call_value(name, value).words
+            told = {language: each.replace(f"{{{name}}}", called[language]) for language, each in told.items()}
+        return Wording(told) if told else None
 
     def _standing_still(self, monotonic: float) -> Iterator[Cause]:
         """Resources that do not do what they should, though nothing of them is overdue."""

@@ -23,7 +23,7 @@ from sequence_planner.editor.symbols.index import (
     value_of,
     variable_of,
 )
-from sequence_planner.editor.symbols.mimic import MimicCollector
+from sequence_planner.editor.symbols.mimic import VARIABLE_IN_BRACES, MimicCollector
 from sequence_planner.editor.symbols.pipelines import PipelineCollector, read_definitions
 from sequence_planner.editor.symbols.scenarios import ScenarioCollector
 from sequence_planner.editor.symbols.texts import (
@@ -343,6 +343,9 @@ class _Walk:
         self._words(entry(document, "instruction", "text"), at.to("instruction", "text"))
         for key in ("image", "video"):
             self._title(entry(document, "instruction", key), at.to("instruction", key))
+        for key in ("not_begun", "not_finished"):
+            self._words(entry(document, "late", key), at.to("late", key))
+            self._values_said(entry(document, "late", key), at.to("late", key))
         if (acknowledgement := text_at(document, "human", "acknowledgement")) is not None:
             self._add(variable_of(resource, str(acknowledgement)), at.to("human", "acknowledgement"), acknowledgement)
         for path in _CONDITIONS:
@@ -485,6 +488,21 @@ class _Walk:
         self._title(written, where)
         for language, text in pairs(written):
             self._title(text, where.to(language))
+
+    def _values_said(self, written: object, where: Where) -> None:
+        """A text for people, or one for each language, in which variables stand in braces beside parameters."""
+        if isinstance(written, SourceText):
+            for match in VARIABLE_IN_BRACES.finditer(written):
+                resource, name = match.groups()
+                if resource is not None:
+                    self._add(ModelPart("resource", None, resource), where, written, Span(*match.span(1)))
+                    self._add(variable_of(resource, name), where, written, Span(*match.span(2)))
+                elif name not in where.around.parameters:
+                    own = variable_of(where.around.resource, name)
+                    is_own = own.full in self._naming.declared.variables
+                    self._add(own if is_own else variable_of(None, name), where, written, Span(*match.span(2)))
+        for language, text in pairs(written):
+            self._values_said(text, where.to(language))
 
     def _title(self, text: object, where: Where) -> None:
         """A text for people, in which a parameter stands in braces."""

@@ -10,7 +10,7 @@ from sequence_planner.editor.symbols.texts import MIMIC, entry, items, pairs, te
 from sequence_planner.language.syntax import Span
 from sequence_planner.model.source import SourceText
 
-_PLACEHOLDER = re.compile(r"\{(?:(\w+)\.)?(\w+)(?:\[[^\]{}]*\])?\}")
+VARIABLE_IN_BRACES = re.compile(r"\{(?:(\w+)\.)?(\w+)(?:\[[^\]{}]*\])?\}")
 
 
 class MimicCollector:
@@ -81,7 +81,7 @@ class MimicCollector:
     def _said(self, content: object, at: Where) -> None:
         """A text for people, in which a variable stands in braces."""
         if isinstance(content, SourceText):
-            for match in _PLACEHOLDER.finditer(content):
+            for match in VARIABLE_IN_BRACES.finditer(content):
                 resource, name = match.groups()
                 if resource is not None:
                     self._add(ModelPart("resource", None, resource), at, content, Span(*match.span(1)))

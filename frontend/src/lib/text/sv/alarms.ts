@@ -1,3 +1,4 @@
+import { withinSentence } from '../../wording/capital.ts';
 import type { Text } from '../text.svelte.ts';
 
 export const alarms: Text['alarms'] = {
@@ -92,7 +93,7 @@ export const alarms: Text['alarms'] = {
 	changed: 'Det har ändrats sedan rutan öppnades:',
 	goneNow: 'Larmet är borta.',
 	links: {
-		resource: (title) => `Tillstånd för ${title}`,
+		resource: (title) => `Tillstånd för ${withinSentence(title)}`,
 		topics: (n) => (n === 1 ? 'Dess topic' : `Dess ${n} topics`),
 		restart: 'Välj en väg tillbaka',
 		label: 'Var man kan titta'

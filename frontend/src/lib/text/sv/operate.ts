@@ -1,3 +1,4 @@
+import { withinSentence } from '../../wording/capital.ts';
 import type { Text } from '../text.svelte.ts';
 
 const starts = (n: number): string => (n === 1 ? '1 start' : `${n} starter`);
@@ -172,7 +173,7 @@ export const operate: Text['operate'] = {
 		nobody: (n) => (n === 1 ? 'Detta kan ingen göra nu' : 'Dessa kan ingen göra nu'),
 		lacks: (what) => `behöver ${what}`,
 		others: 'Detta kan fortfarande göras',
-		by: (whom) => `av ${whom}`,
+		by: (whom) => `av ${withinSentence(whom)}`,
 		goesOn: 'av det som redan pågår',
 		once: (what) => `så snart ${what}`,
 		later: (n) => (n === 1 ? '1 som kommer senare' : `${n} som kommer senare`),

@@ -1,3 +1,4 @@
+import { withinSentence } from '../../wording/capital.ts';
 import type { Text } from '../text.svelte.ts';
 
 export const ros: Text['ros'] = {
@@ -113,7 +114,7 @@ export const ros: Text['ros'] = {
 	chosen: {
 		pipeline: 'Visa dess pipeline',
 		topic: (name) => `Topic ${name}`,
-		resource: (title) => `Topics för ${title}`,
+		resource: (title) => `Topics för ${withinSentence(title)}`,
 		unknown: (name) => `Varken någon på nätet eller stationen känner till en topic ${name}.`,
 		close: 'Visa alla topics',
 		state: (title) => `Tillstånd för ${title}`,

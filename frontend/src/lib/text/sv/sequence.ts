@@ -1,5 +1,6 @@
 /** Sidan som visar operationerna i deras ordning. */
 import { count } from '../count.ts';
+import { withinSentence } from '../../wording/capital.ts';
 import type { Text } from '../text.svelte.ts';
 
 export const sequence: Text['sequence'] = {
@@ -17,7 +18,7 @@ export const sequence: Text['sequence'] = {
 	noneHow: 'En operation säger vad som ska uppnås och när det är önskat. Lägg till en på sidan Modell, i operations.yaml.',
 	chosen: 'Den valda operationen',
 	noLane: 'Stationen',
-	by: (lane) => `Görs av ${lane}`,
+	by: (lane) => `Görs av ${withinSentence(lane)}`,
 	isNew: 'finns inte i stationen än',
 	ofDraft: 'utkast',
 	took: (time) => `tog ${time}`,
