@@ -448,6 +448,7 @@ def test_holding_in_restart_mode_calls_off_and_stays_there(station: Station) -> 
     assert station.execution.mode is Mode.RESTART
     assert station.execution.state["drill"] is False
     assert isinstance(station.heard[-1].happening, CalledOff)
+    assert station.heard[-1].called_off == ("drill",), "who reads the journal is told what does not go on"
 
 
 def test_what_came_back_is_where_it_begins() -> None:

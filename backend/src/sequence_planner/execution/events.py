@@ -254,9 +254,13 @@ class TickOutcome:
 
 @dataclass(frozen=True)
 class Heard:
-    """Something has happened and led from the state `before` to the one `after`; a tick has an outcome."""
+    """Something has happened and led from the state `before` to the one `after`; a tick has an outcome.
+
+    `called_off` are the abilities that were running and took their cancel actions because a person has stopped them.
+    """
 
     happening: Event
     before: State
     after: State
     outcome: TickOutcome | None = None
+    called_off: tuple[str, ...] = ()

@@ -513,8 +513,8 @@ class ExecutorBase:
         run.synchronise()
         return self.supervisor.safe.includes(run.values)
 
-    def _call_off(self, now: Timestamp) -> None:
-        """Take the cancel actions of all that runs.
+    def _call_off(self, now: Timestamp) -> tuple[str, ...]:
+        """Take the cancel actions of all that runs, and return what was called off so.
 
         Forces end, and nothing is set in motion by that: a forced output is called off as an ability that writes it
         would be. Where none says how, it stays as it is.
@@ -526,6 +526,7 @@ class ExecutorBase:
         self._write({name: value for name, value in others.items() if name in forced} | writes)
         for name in called_off:
             self.plan.order.finish(name, now)
+        return called_off
 
     def _end_operator_plan(self, why: str, now: Timestamp, *, by: str | None = None, done: bool = False) -> None:
         operator_plan = self.operator_plan
@@ -590,8 +591,7 @@ class Executor(ExecutorBase):
         """Another mode. An operator plan ends with it, and holding calls off what runs."""
         before = self.state
         self._end_operator_plan(message("ended.mode", by=by, mode=message(f"mode.{mode}")), now, by=by)
-        if mode is Mode.HOLD:
-            self._call_off(now)
+        called_off = self._call_off(now) if mode is Mode.HOLD else ()
         restarts = Mode.RESTART in (mode, self.mode)
         # A step is for what can be seen now, and a wish to stop after the product for this mode; one that is reached
         # says why it is paused.
@@ -600,15 +600,15 @@ class Executor(ExecutorBase):
         self._change(mode=mode, steps=0, cycle_stop=stop if stays else None)
         if restarts:
             self.plan.drop(message("plan.in-restart" if mode is Mode.RESTART else "plan.restart-left"))
-        self._emit(ModeChanged(mode, by, now), before)
+        self._emit(ModeChanged(mode, by, now), before, called_off=called_off)
 
     def call_off(self, by: str, now: Timestamp) -> None:
         """Call off what runs, and the operator plan; the mode stays."""
         before = self.state
         self._end_operator_plan(message("ended.hold", by=by), now, by=by)
         self._change(steps=0)
-        self._call_off(now)
-        self._emit(CalledOff(by, now), before)
+        called_off = self._call_off(now)
+        self._emit(CalledOff(by, now), before, called_off=called_off)
 
     def set_cycle_stop(self, on: bool, by: str, why: str, now: Timestamp) -> None:
         """From now on nothing starts once the product that is in work is done, or things start as ever."""
@@ -765,9 +765,15 @@ class Executor(ExecutorBase):
             self._emit(Asked(contract), self.state)
         return request
 
-    def _emit(self, happening: Event, before: State, outcome: TickOutcome | None = None) -> None:
+    def _emit(
+        self,
+        happening: Event,
+        before: State,
+        outcome: TickOutcome | None = None,
+        called_off: tuple[str, ...] = (),
+    ) -> None:
         if outcome is None and not isinstance(happening, Asked | Answered | Unanswered | Explained):
             self.revision += 1
-        heard = Heard(happening, before, self.state, outcome)
+        heard = Heard(happening, before, self.state, outcome, called_off)
         for listener in self.listeners:
             listener(heard)

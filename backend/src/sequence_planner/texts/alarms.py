@@ -279,14 +279,14 @@ ALARMS: Final[dict[str, str]] = {
     "problem.other": "something else",
     **_kind(
         "by-hand",
-        "{resource} has changed without a command. Now: {values}",
-        "{resource} has changed without a command. Now: {values}",
+        "{resource} has changed without a command. Measured then: {values}",
+        "{resource} has changed without a command. Measured then: {values}",
         "{went_on}",
         "Somebody may have moved it by hand. If so, look whether what the station believes is still true.",
     ),
     "by-hand.value": "{value} (before: {before})",
     "by-hand.nothing": "Nothing has been started because of it yet.",
-    "by-hand.executes": "{ability} is under way again, as it was commanded before.",
+    "by-hand.executes": "{ability} was then under way again, as it was commanded before.",
     "by-hand.finished": "{ability} counts as finished by it.",
     "by-hand.started": "{ability} was started after it.",
     # The controller, its records and its model.

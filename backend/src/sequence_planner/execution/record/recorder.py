@@ -224,6 +224,8 @@ class RunRecorder:
             content = self._book.content(happening) | self._outcome(outcome)
         else:
             content = self._codec.content(happening)
+        if heard.called_off:
+            content["called_off"] = list(heard.called_off)
         content |= self._consequences(heard)
         content["digest"] = self._memory.digest(self._execution)
         now = getattr(happening, "now", None)
