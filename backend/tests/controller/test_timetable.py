@@ -9,11 +9,15 @@ import pytest
 from controller.test_local_formulas import beginning
 from controller.test_receding_horizon import asked, ticks
 from sequence_planner.automaton.automaton import Automaton, HumanTask, Timeouts
+from sequence_planner.automaton.compiled_tick import CompiledRun
 from sequence_planner.controller.views.wording import plan_preview
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.core.immutable import replace
+from sequence_planner.execution import forecast
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.forecast import Forecast, waiting_for_people
+from sequence_planner.execution.outlook import Outlook, simulate_plan
+from sequence_planner.execution.plan_tracker import PlanCursor
 from sequence_planner.execution.vocabulary import Mode
 from sequence_planner.language.types import EnumerationType, Value
 from sequence_planner.planning.problem import Plan, PlanAnswer, PlanTick, Verdict
@@ -167,3 +171,17 @@ def test_the_execution_is_left_as_it_is() -> None:
     before = dict(execution.state)
     Forecast(execution).update(1000)
     assert dict(execution.state) == before
+
+
+def test_people_are_expected_to_do_one_thing_after_the_other_where_nothing_tells_when_they_are_done(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def untold(order: PlanCursor, run: CompiledRun, automaton: Automaton) -> Outlook:
+        return replace(simulate_plan(order, run, automaton), ends={}, waits={})
+
+    monkeypatch.setattr(forecast, "simulate_plan", untold)
+    task = HumanTask("do it", "at")
+    said = {name: replace(each, human=task, duration=(2.0, 4.0)) for name, each in SLOW.abilities.items()}
+    watched = Watched(replace(SLOW, abilities=said))
+    watched.tick(0)
+    assert watched.expected == {"aside": (0, 3), "onwards": (3, 6), "away": (6, 9)}

@@ -91,11 +91,16 @@ class Forecast:
         ending: dict[int, list[tuple[str, float]]] = defaultdict(list)  # which abilities end in a tick, and when
         table: dict[int, Expected] = {}
 
+        busy: dict[str, float] = {}  # until when people are who do something whose end the simulation does not tell
+
         def count_on(step: PlannedStart, start: float, tick: int) -> None:
+            ability = self._execution.automaton.abilities[step.ability]
             end = start + self._seconds(step, tick)
             table[step.number] = Expected(start, end)
             if (ends := outlook.ends.get(step.number)) is not None:
                 ending[ends].append((step.ability, end))
+            elif ability.human is not None:
+                busy[ability.resource] = max(end, busy.get(ability.resource, end))
 
         comes, tick = self._began, outlook.tick
         for step in order.past:
@@ -112,6 +117,9 @@ class Forecast:
             read = self._reads(step.ability, (guards or {}).get(step.ability))
             before = [end for each, ended in ending.items() if each <= tick for end in ended]
             comes = max(comes, *(at for name, at in before if self._writes(name) & read), comes)
+            ability = self._execution.automaton.abilities[step.ability]
+            # People do one thing after the other.
+            comes = max(comes, busy.get(ability.resource, comes)) if ability.human is not None else comes
             count_on(step, comes, tick)
         return table
 

@@ -325,7 +325,9 @@ def test_what_was_moved_by_hand_is_a_notice_that_nobody_has_to_acknowledge(monke
     monkeypatch.setattr(shown.by_hand, "notices", lambda monotonic: notices)
     told = shown.current(now)["by-hand:robot"]
     assert (told.priority, told.state) == (Priority.LOW, AlarmState.ACKNOWLEDGED)
-    assert told.text == "Robot UR10 has changed without a command. Measured then: robot.pose == home (before: bolt_pair_1)"
+    assert (
+        told.text == "Robot UR10 has changed without a command. Measured then: robot.pose == home (before: bolt_pair_1)"
+    )
     assert told.consequence == "Nothing has been started because of it yet."
     notices[:] = [dataclasses.replace(moved, by="robot.move_to_position(home)", how=WentOn.STARTED, on=now)]
     assert shown.current(now)["by-hand:robot"].consequence == "“Move to home” was started after it."
