@@ -2,7 +2,7 @@ import { expect, test } from 'vitest';
 import type { MimicPart, MimicSymbol } from '#lib/contract.ts';
 import { stoppedOf } from '#lib/operation/standing.ts';
 import { alarm, estimate, operation, PLAN, step, view } from '#lib/testing/view.ts';
-import { isPartAffected, standsAffected } from './affected.ts';
+import { isOutside, isPartAffected, outsideOf, standsAffected } from './affected.ts';
 
 const steps = [step('tool.run', 'tool', 1, { id: '1', status: 'running', started: 10 })];
 const station = view({
@@ -40,4 +40,14 @@ test('what stands where an operation has stopped lights up with it', () => {
 
 test('where all go on nothing lights up', () => {
 	expect(stoppedOf({ ...station, alarms: {} })).toBeNull();
+});
+
+test('outside the safe states what is what it must not be lights up, and no longer once it is back', () => {
+	const back = { violated: [{ name: 'never', title: 'Never' }], differences: [{ name: 'robot.pose', now: 'pair_2', safe: 'above' }] } as never;
+	const outside = outsideOf(view({ way_back: back }));
+	const tool = { track: null, resource: 'tool' } as unknown as MimicSymbol;
+	expect([robot, tool].map((symbol) => isOutside(symbol, station, outside))).toEqual([true, false]);
+	const measured = { ...station, variables: { 'tool.runs': estimate({ resource: 'tool', value: false }) } };
+	expect(isOutside(tool, measured, new Set(['tool.runs']))).toBe(true);
+	expect(outsideOf(view({ way_back: null })).size).toBe(0);
 });

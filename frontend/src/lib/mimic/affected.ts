@@ -1,5 +1,5 @@
 /** What of the picture lights up with operations that have stopped: the parts they are about, and what stands there. */
-import type { MimicPart, MimicSymbol } from '#lib/contract.ts';
+import type { MimicPart, MimicSymbol, StationView } from '#lib/contract.ts';
 import type { Stopped } from '#lib/operation/standing.ts';
 import { valuesIn, type Pictured } from './describe.ts';
 import { valueOf, whereabouts } from './live.ts';
@@ -19,4 +19,14 @@ export function isPartAffected({ variable }: MimicPart, { operations, variables 
 export function standsAffected({ track }: MimicSymbol, { variables }: Pictured, stopped: Stopped): boolean {
 	const at = track && whereabouts(track, variables, null);
 	return at?.kind === 'there' && [...stopped.operations].some((name) => valuesIn(name).includes(at.to));
+}
+
+/** The variables by which a station that is outside its safe states differs from the nearest of them. */
+export function outsideOf({ way_back: back }: Pick<StationView, 'way_back'>): ReadonlySet<string> {
+	return new Set(back !== null && back.violated.length > 0 ? back.differences.map(({ name }) => name) : []);
+}
+
+/** Whether something is what it must not be: its place, or what its device measures or is told. */
+export function isOutside({ track, resource }: MimicSymbol, { variables }: Pictured, outside: ReadonlySet<string>): boolean {
+	return [...outside].some((name) => name === track?.position || (resource !== null && variables[name]?.resource === resource));
 }

@@ -4,7 +4,7 @@ import type { Stopped } from '#lib/operation/standing.ts';
 import { doingOf } from '#lib/resource/doing.ts';
 import { inLanguage, say } from '#lib/text/text.svelte.ts';
 import { nameOf as nameOfVariable } from '#lib/wording/names.svelte.ts';
-import { isPartAffected, standsAffected } from './affected.ts';
+import { isOutside, isPartAffected, standsAffected } from './affected.ts';
 import { keysOf, nameOf, nowOf, partValue, type Now, type Pictured } from './describe.ts';
 import { placeOf, type Point } from './geometry.ts';
 import { alarmsOf, holds, levelOf, valueOf, whereabouts, worst } from './live.ts';
@@ -16,7 +16,7 @@ export interface Told {
 	/** What it does or is, with its parts and what it holds: for who does not see it. */
 	readonly sentence: string;
 	readonly alarm: Priority | null;
-	/** It lights up as this: by its alarm, or as it stands where an operation has stopped. */
+	/** It lights up as this: by its alarm, as it stands where an operation has stopped, or as it is what it must not be. */
 	readonly lit: Priority | null;
 	/** Where it stands on its track; null where it has none, or nobody knows. */
 	readonly stands: Point | null;
@@ -24,14 +24,17 @@ export interface Told {
 	readonly parts: ReadonlyMap<string, Priority>;
 }
 
-/** `stopped` are the operations that came to a stop, if any did. */
-export function toldOf(mimic: Mimic, view: Pictured, language: string, stopped: Stopped | null = null): Told[] {
+/** `stopped` are the operations that came to a stop, if any did; `outside` the variables that are what they must not be. */
+export function toldOf(mimic: Mimic, view: Pictured, language: string, stopped: Stopped | null = null, outside: ReadonlySet<string> = new Set()): Told[] {
 	const found = { doing: doingOf(view.abilities), keys: keysOf(view.variables) };
 	return mimic.symbols.map((symbol) => {
 		const alarm = worst(alarmsOf(view.alarms, symbol.resource));
 		const stands = stopped !== null && standsAffected(symbol, view, stopped);
 		const now = nowOf(symbol, view, found, language, stands);
-		const parts = stopped === null ? [] : symbol.parts.flatMap((part) => (isPartAffected(part, view, stopped) ? [[part.variable, stopped.priority] as const] : []));
+		const parts = symbol.parts.flatMap((part): [string, Priority][] => {
+			if (outside.has(part.variable)) return [[part.variable, 'high']];
+			return stopped !== null && isPartAffected(part, view, stopped) ? [[part.variable, stopped.priority]] : [];
+		});
 		return {
 			symbol,
 			title: nameOf(symbol, view.resources, language),
@@ -39,7 +42,7 @@ export function toldOf(mimic: Mimic, view: Pictured, language: string, stopped: 
 			sentence: [now.text, ...details(symbol, view, language)].filter((text) => text !== '').join('. '),
 			alarm,
 			stands: standsAt(symbol, view),
-			lit: alarm ?? (stands ? stopped.priority : null),
+			lit: isOutside(symbol, view, outside) ? 'high' : (alarm ?? (stands ? stopped.priority : null)),
 			parts: new Map(parts)
 		};
 	});

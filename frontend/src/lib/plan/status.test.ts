@@ -1,7 +1,7 @@
 import { expect, test } from 'vitest';
 import type { Ability, Job, Operation } from '#lib/contract.ts';
 import { alarm, PLAN, step, view } from '#lib/testing/view.ts';
-import { awaited, isOfNoPlan, isUnheard, nothingNext } from './status.ts';
+import { awaited, isOfNoPlan, isUnheard, nothingNext, stoppedBy } from './status.ts';
 
 const active = { active: true } as Operation;
 const idle = { ...PLAN, status: 'idle' as const };
@@ -49,4 +49,14 @@ test('a plan waits for people while nothing else runs and their tasks take longe
 	const move = step('robot.move', 'robot', 0, { status: 'running', started: 990, expected_end: 995 });
 	expect(awaited({ plan: { ...PLAN, steps: [task, move] }, abilities }, 996)).toEqual([]);
 	expect(awaited({ plan: { ...PLAN, steps: [] }, abilities }, 996)).toEqual([]);
+});
+
+test('each of two runs of a device has stopped that has an alarm of its own, and else the last one', () => {
+	const first = step('tool.float', 'tool', 0, { status: 'running', started: 980 });
+	const last = step('tool.run', 'tool', 0, { status: 'running', started: 985 });
+	const late = alarm({ kind: 'overdue', group: 'device', priority: 'medium', resources: ['tool'], since: 990 });
+	const stopped = (alarms: Parameters<typeof stoppedBy>[2]) => [first, last].map((each) => stoppedBy(each, [first, last], alarms));
+	expect(stopped({ 'overdue:tool.run': late })).toEqual([null, 'medium']);
+	expect(stopped({ 'overdue:tool.run': late, 'overdue:tool.float': late })).toEqual(['medium', 'medium']);
+	expect(stopped({ 'overdue:tool.float': { ...late, ended: 992 } })).toEqual([null, null]);
 });

@@ -71,9 +71,15 @@ export function stoppedSince({ steps }: Pick<Plan, 'steps'>, alarms: Alarms): nu
 	return since.length === 0 ? null : Math.min(...since);
 }
 
-/** The alarm that tells of a run that it does not come to its end: it is the last of its resource, and it tells so since then. */
-function stopOf({ started, resource }: PlanStep, steps: readonly PlanStep[], alarms: Alarms): Alarm | null {
-	if (started === null || steps.some((other) => other.resource === resource && (other.started ?? -Infinity) > started)) return null;
+/**
+ * The alarm that tells of a run that it does not come to its end since then: of this ability, or of its resource, of which the
+ * last one is meant.
+ */
+function stopOf({ ability, started, resource }: PlanStep, steps: readonly PlanStep[], alarms: Alarms): Alarm | null {
+	if (started === null) return null;
+	const own = alarms[`overdue:${ability}`];
+	if (own !== undefined && !isOver(own) && own.since >= started) return own;
+	if (steps.some((other) => other.resource === resource && (other.started ?? -Infinity) > started)) return null;
 	const alarm = failing(resource, alarms);
 	return alarm !== undefined && STUCK.has(alarm.kind) && alarm.since >= started ? alarm : null;
 }
