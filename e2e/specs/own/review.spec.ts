@@ -97,8 +97,8 @@ test('a changed model is saved, compared, refused while at work, deployed when h
 	await part.getByText('Before and after').click();
 	await expect(part).toContainText('robot.pose == home and');
 	const lost = compared.locator('[data-row="gone start engine.next_engine"]');
-	await expect(lost).toContainText(/can no longer start where it could\s+removed\s+It\sis\sso\safter\s\d+\sstarts/);
-	await expect(lost).toContainText('removed');
+	await expect(lost).toContainText(/can no longer start where it could\s+changed\s+It\sis\sso\safter\s\d+\sstarts/);
+	await expect(lost).toContainText('changed');
 	await expect(page.getByTestId('both-plans')).toHaveAttribute('data-found', 'true', { timeout: 60_000 });
 	const tabs = page.getByRole('tablist', { name: 'What is shown of the changes' });
 	await tabs.getByRole('tab', { name: /^What will be different/ }).press('ArrowRight');
