@@ -47,6 +47,9 @@ test('outside the safe states what is what it must not be lights up, and no long
 	const outside = outsideOf(view({ way_back: back }));
 	const tool = { track: null, resource: 'tool' } as unknown as MimicSymbol;
 	expect([robot, tool].map((symbol) => isOutside(symbol, station, outside))).toEqual([true, false]);
+	// It stands at what must not be so.
+	expect(isOutside(robot, station, new Set(['bolts[pair_2]']))).toBe(true);
+	expect(isOutside(robot, station, new Set(['bolts[pair_1]']))).toBe(false);
 	const measured = { ...station, variables: { 'tool.runs': estimate({ resource: 'tool', value: false }) } };
 	expect(isOutside(tool, measured, new Set(['tool.runs']))).toBe(true);
 	expect(outsideOf(view({ way_back: null })).size).toBe(0);

@@ -1,7 +1,7 @@
 /** What of the picture lights up with operations that have stopped: the parts they are about, and what stands there. */
 import type { MimicPart, MimicSymbol, StationView } from '#lib/contract.ts';
 import type { Stopped } from '#lib/operation/standing.ts';
-import { valuesIn, type Pictured } from './describe.ts';
+import { indexOf, valuesIn, type Pictured } from './describe.ts';
 import { valueOf, whereabouts } from './live.ts';
 
 /** A variable, with its indices, and the value that a goal wants of it. */
@@ -26,7 +26,9 @@ export function outsideOf({ way_back: back }: Pick<StationView, 'way_back'>): Re
 	return new Set(back !== null && back.violated.length > 0 ? back.differences.map(({ name }) => name) : []);
 }
 
-/** Whether something is what it must not be: its place, or what its device measures or is told. */
+/** Whether something is what it must not be, or where it must not be: its device, its place, and what is at that place. */
 export function isOutside({ track, resource }: MimicSymbol, { variables }: Pictured, outside: ReadonlySet<string>): boolean {
-	return [...outside].some((name) => name === track?.position || (resource !== null && variables[name]?.resource === resource));
+	const at = track && whereabouts(track, variables, null);
+	const about = (name: string): boolean => name === track?.position || (at?.kind === 'there' && indexOf(name) === at.to);
+	return [...outside].some((name) => about(name) || (resource !== null && variables[name]?.resource === resource));
 }
