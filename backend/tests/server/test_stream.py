@@ -180,7 +180,8 @@ def test_many_wrong_frames_harm_nobody_else(server: Server, stream: ClientConnec
             stream.send("nonsense")
         hear(calm)
         for _ in range(5):
-            assert hear(calm, 1.0)["kind"] == "delta"
+            # That many frames may keep the process busy for so long that it hears less of the controller for a moment.
+            assert hear_kind(calm, "delta")
 
 
 def test_every_client_sees_the_same_numbers(server: Server) -> None:
