@@ -81,6 +81,9 @@ export const frame = {
 	connecting: 'Connecting',
 	notLiveStrong: 'Not live.',
 	lastHeard: (age: string): string => `This view is ${age} old. The station may have moved on.`,
+	/** They are sent from an old view too; whether they arrive nobody knows. */
+	relyNot: 'Nothing that is sent from here, Pause and Hold neither, is sure to arrive.',
+	safetyDevices: 'To stop, use the safety devices of the station.',
 	notUnderstood: (what: string): string => `The server did not understand this page: ${what}`,
 	/** Why a view is old. */
 	causes: {

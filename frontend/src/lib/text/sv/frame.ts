@@ -76,6 +76,8 @@ export const frame: Text['frame'] = {
 	connecting: 'Ansluter',
 	notLiveStrong: 'Inte direkt.',
 	lastHeard: (age) => `Det som visas är ${age} gammalt. Stationen kan ha gått vidare.`,
+	relyNot: 'Inget som skickas härifrån kommer säkert fram, inte heller Pausa och Stoppa.',
+	safetyDevices: 'Stoppa med stationens skyddsanordningar, till exempel nödstoppet.',
 	notUnderstood: (what) => `Servern förstod inte den här sidan: ${what}`,
 	causes: {
 		connecting: 'Ansluter till stationen.',
