@@ -3,6 +3,9 @@ import type { Priority, Standing, StationView, WatchSnapshot } from '#lib/contra
 import { say } from '#lib/text/text.svelte.ts';
 import { listed } from '#lib/wording/listed.ts';
 
+/** The states of jobs that are over. */
+const OVER: ReadonlySet<string> = new Set<StationView['jobs'][string]['state']>(['ended', 'stopped', 'aborted']);
+
 /** How much of somebody's attention it wants. */
 export type Tone = 'plain' | 'medium' | 'high';
 
@@ -52,4 +55,16 @@ export function progressIn({ jobs, operations, by_order: byOrder }: Pick<Station
 	if (byOrder || !first) return null;
 	const began = first.active_since ?? first.began ?? 0;
 	return { done: all.filter(({ active, ended }) => !active && ended !== null && ended >= began).length, all: all.length };
+}
+
+/** The same as a watch is told: what devices do now. What is not heard may do it or not. */
+export function doingIn({ plan, abilities, standing, failing }: Pick<StationView, 'plan' | 'abilities' | 'standing' | 'failing'>): { readonly title: string }[] {
+	if (standing !== 'working' || failing.length > 0) return [];
+	return plan.steps.filter(({ status, ability }) => status === 'running' && !abilities[ability]?.human);
+}
+
+/** Whether nothing is made as the station works by order and no order may start. */
+export function awaitsOrder({ by_order: byOrder, standing, jobs }: Pick<StationView, 'by_order' | 'standing' | 'jobs'>): boolean {
+	const isWorking = standing === 'working' || standing === 'silent';
+	return byOrder && isWorking && Object.values(jobs).every(({ state }) => OVER.has(state));
 }

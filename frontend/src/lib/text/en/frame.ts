@@ -100,6 +100,7 @@ export const frame = {
 	nothingNext: {
 		idle: 'nothing to plan',
 		order: 'the order is paused; it is resumed under Orders',
+		noOrder: 'waits for an order that may start',
 		planning: 'a plan is being looked for',
 		followed: 'nothing more to start',
 		waits: 'waits for the running steps',

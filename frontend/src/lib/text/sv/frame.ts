@@ -91,6 +91,7 @@ export const frame: Text['frame'] = {
 	nothingNext: {
 		idle: 'inget att planera',
 		order: 'ordern är pausad; den återupptas under Order',
+		noOrder: 'väntar på en order som får börja',
 		planning: 'en plan söks',
 		followed: 'inget mer att starta',
 		waits: 'väntar på stegen som pågår',

@@ -18,6 +18,8 @@ export const watch: Text['watch'] = {
 	still: 'Inget startar än.',
 	recorded: 'Klart antecknas.',
 	progress: (done, all) => `${done} av ${all} klara`,
+	awaitsOrder: 'Stationen väntar på en order.',
+	doing: (what) => `Pågår: ${what}`,
 	comes: 'Din nästa uppgift kommer hit.',
 	next: (title, seconds) =>
 		seconds === null ? `Sedan: ${title}` : seconds < 1 ? `${title} strax` : `${title} om\u00a0ungefär\u00a0${seconds < 60 ? `${seconds}\u00a0s` : `${Math.round(seconds / 60)}\u00a0min`}`,
