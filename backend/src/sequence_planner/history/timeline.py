@@ -64,8 +64,8 @@ class LineView(View):
     """What happened between two times: the records behind number `begin`, up to `end`.
 
     `first` and `last` are those of the whole journal. `running` had been started before, the operations `active` were
-    so, `mode` was the mode then, and `alarms` had come and were not over: each as it came. Without `whole` there is too much for every start, end and plan to be a mark of
-    its own. `bins` counts the records in equal parts of the time.
+    so, `mode` was the mode then, and `alarms` had come and were not over: each as it came. Without `whole` there is too
+    much for every start, end and plan to be a mark of its own. `bins` counts the records in equal parts of the time.
     """
 
     first: PlaceView

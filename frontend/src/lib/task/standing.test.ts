@@ -60,7 +60,7 @@ test('that the station waits for an order is said where it could make one, and n
 test('what devices do is told, and not what people do or what may be so', () => {
 	const steps = [step('robot.move', 'robot', 0, { status: 'running' }), step('operator.place', 'operator', 0, { status: 'running' }), step('robot.wait', 'robot', 1)];
 	const abilities = { 'robot.move': { human: false }, 'operator.place': { human: true } } as unknown as StationView['abilities'];
-	const now = { plan: { ...PLAN, steps }, abilities, standing: 'working', failing: [] } as const;
+	const now: Parameters<typeof doingIn>[0] = { plan: { ...PLAN, steps }, abilities, standing: 'working', failing: [] };
 	expect(doingIn(now).map((each) => (each as { ability?: string }).ability)).toEqual([steps[0]?.ability]);
 	expect(doingIn({ ...now, failing: ['Robot'] })).toEqual([]);
 	expect(doingIn({ ...now, standing: 'silent' })).toEqual([]);

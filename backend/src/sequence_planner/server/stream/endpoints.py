@@ -229,7 +229,9 @@ def doing_in(view: StationView) -> list[WatchDoing]:
     if view.standing is not StationStanding.WORKING or view.failing:
         return []
     running = [each for each in view.plan.steps if each.status is StepStatus.RUNNING]
-    return [WatchDoing(ability=each.ability, title=each.title) for each in running if not view.abilities[each.ability].human]
+    return [
+        WatchDoing(ability=each.ability, title=each.title) for each in running if not view.abilities[each.ability].human
+    ]
 
 
 def awaits_order(view: StationView) -> bool:
