@@ -48,7 +48,7 @@ test('how far the station is: of the order in work, or of the operations since t
 
 test('that the station waits for an order is said where it could make one, and none may start', () => {
 	const free = { by_order: true, standing: 'working', jobs: {} } as const;
-	const job = (state: string): StationView['jobs'] => ({ a: { state } as StationView['jobs'][string] });
+	const job = (state: string): StationView['jobs'] => ({ a: { state, ended: state === 'ended' ? 5 : null } as StationView['jobs'][string] });
 	expect(awaitsOrder(free)).toBe(true);
 	expect(awaitsOrder({ ...free, jobs: job('ended') })).toBe(true);
 	expect(awaitsOrder({ ...free, jobs: job('waiting') })).toBe(false);

@@ -3,9 +3,6 @@ import type { Priority, Standing, StationView, WatchSnapshot } from '#lib/contra
 import { say } from '#lib/text/text.svelte.ts';
 import { listed } from '#lib/wording/listed.ts';
 
-/** The states of jobs that are over. */
-const OVER: ReadonlySet<string> = new Set<StationView['jobs'][string]['state']>(['ended', 'stopped', 'aborted']);
-
 /** How much of somebody's attention it wants. */
 export type Tone = 'plain' | 'medium' | 'high';
 
@@ -65,6 +62,5 @@ export function doingIn({ plan, abilities, standing, failing }: Pick<StationView
 
 /** Whether nothing is made as the station works by order and no order may start. */
 export function awaitsOrder({ by_order: byOrder, standing, jobs }: Pick<StationView, 'by_order' | 'standing' | 'jobs'>): boolean {
-	const isWorking = standing === 'working' || standing === 'silent';
-	return byOrder && isWorking && Object.values(jobs).every(({ state }) => OVER.has(state));
+	return byOrder && whyItStands(standing) === '' && Object.values(jobs).every(({ ended }) => ended !== null);
 }

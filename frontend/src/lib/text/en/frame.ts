@@ -150,5 +150,16 @@ export const frame = {
 			done: (operation: string): string => `“${operation}” is done. When does it begin again?`
 		},
 		groups: { act: 'Possible now', page: 'Pages', alarm: 'Alarms', operation: 'Operations', ability: 'Abilities', variable: 'Variables' }
-	}
+	},
+	noStation: 'Nothing is known of the station yet.',
+	/** Of what is not live. */
+	asOf: (clock: string): string => `as it was at ${clock}`,
+	/** Of a chart. */
+	asTable: 'as table',
+	takeBack: 'Take back',
+	/** Why, in the journal. */
+	takenBack: 'Taken back at once',
+	reasonMissing: 'Say why: it is written into the journal.',
+	/** Of a field. */
+	needed: '(needed)'
 };

@@ -1,5 +1,8 @@
 /** The watch, and tasks wherever they are shown. */
 export const watch = {
+	/** What this page is called, and the one to which who may goes on. */
+	page: 'Operator view',
+	operate: 'Operate',
 	forYou: 'For you',
 	nothingToDo: 'Nothing to do',
 	nothingWhenHeard: 'Nothing when last heard',

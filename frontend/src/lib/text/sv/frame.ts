@@ -138,5 +138,12 @@ export const frame: Text['frame'] = {
 			done: (operation) => `”${operation}” är klar. När börjar den igen?`
 		},
 		groups: { act: 'Möjligt nu', page: 'Sidor', alarm: 'Larm', operation: 'Operationer', ability: 'Förmågor', variable: 'Variabler' }
-	}
+	},
+	noStation: 'Inget är känt om stationen än.',
+	asOf: (clock) => `som det var ${clock}`,
+	asTable: 'som tabell',
+	takeBack: 'Ta tillbaka',
+	takenBack: 'Genast tillbakataget',
+	reasonMissing: 'Skriv varför: det står i journalen.',
+	needed: '(måste anges)'
 };

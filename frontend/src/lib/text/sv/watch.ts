@@ -1,6 +1,8 @@
 import type { Text } from '../text.svelte.ts';
 
 export const watch: Text['watch'] = {
+	page: 'Operatörsvy',
+	operate: 'Drift',
 	forYou: 'För dig',
 	nothingToDo: 'Inget att göra',
 	nothingWhenHeard: 'Inget när den senast hördes',
