@@ -12,7 +12,7 @@ from sqlalchemy import Connection, event
 from sequence_planner.core.actor import SYSTEM
 from sequence_planner.db.database import Database
 from sequence_planner.mes import orders, responses
-from sequence_planner.mes.order import JobOrder, OrderCommand, OrderContent, OrderState
+from sequence_planner.mes.order import LONGEST_TITLE, JobOrder, OrderCommand, OrderContent, OrderState, title_of
 
 ASKED: dict[str, Callable[[Connection], object]] = {
     "how many": orders.count_open,
@@ -84,3 +84,10 @@ def test_however_many_orders_there_are_all_are_read(database: Database) -> None:
             orders.store(connection, OrderContent(work_master="a"), SYSTEM, 1.0, id=str(number), start=True)
     with database.reading() as connection:
         assert [each.id for each in orders.open_orders(connection)] == [str(number) for number in range(501)]
+
+
+def test_an_order_is_called_by_its_number_and_by_what_it_is_where_the_number_was_drawn() -> None:
+    assert title_of("D13-4711", "Engine D13K 540") == "D13-4711"
+    assert title_of("00f1a2b3c4d5e6f7", " Engine D13K 540 ") == "Engine D13K 540 · e6f7"
+    assert title_of("00f1a2b3c4d5e6f7", " ") == "e6f7"
+    assert len(title_of("00f1a2b3c4d5e6f7", "long" * 100)) == LONGEST_TITLE

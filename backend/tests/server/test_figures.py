@@ -61,7 +61,7 @@ def job(name: str, state: str, taken: float, ended: float | None = None) -> dict
 def test_of_a_station_that_has_done_nothing_nothing_is_known(mes: httpx.Client) -> None:
     found = figures(mes)
     assert (found["in_work"], found["cycle"], found["availability"]) == ([], None, None)
-    assert found["made"] == {"count": 0, "planned": None, "by_now": None}
+    assert found["made"] == {"count": 0, "planned": None, "by_now": None, "by_order": 0, "to_make": 0}
     assert found["day"] <= found["time"]
     assert (found["shift"], found["next_shift"]) == (None, None), "it has no shifts"
 
@@ -90,11 +90,14 @@ def test_what_was_made_of_what_is_due_and_how_long_the_station_worked(
         ("packml", now - 10, {"state": "held", "since": now - 10, "monotonic": monotonic - 10}),
     )
     until(lambda: figures(mes)["made"]["count"] == 1, seconds=20)
-    assert figures(mes)["made"] == {"count": 1, "planned": 3, "by_now": 2}
+    assert figures(mes)["made"] == {"count": 1, "planned": 3, "by_now": 2, "by_order": 1, "to_make": 3}
     availability = figures(mes)["availability"]
     assert availability["available"] == 80
     assert 90 <= availability["counted"] < 120
     assert availability["share"] == availability["available"] / availability["counted"]
+    store(mes, "held back", id="held", due=now - 1, start=False)
+    until(lambda: figures(mes)["made"]["planned"] == 4, seconds=20)
+    assert figures(mes)["made"]["to_make"] == 3, "nobody has released it"
     until(lambda: figures(mes)["cycle"] is not None, seconds=20)
     cycle = figures(mes)["cycle"]
     assert (cycle["work_master"], cycle["last"], cycle["median"]) == ("truck_engine", [90.0], 90.0)

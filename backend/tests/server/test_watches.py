@@ -30,7 +30,7 @@ from sequence_planner.core.data_models import DataModel
 from sequence_planner.execution.vocabulary import JobState
 from sequence_planner.server.api.watches import WatchProgress
 from sequence_planner.server.settings import Settings
-from sequence_planner.server.stream.endpoints import progress_of
+from sequence_planner.server.stream.endpoints import awaits_order, doing_in, progress_of
 from sequence_planner.texts.message import as_it_was
 from support.example_view import example_job, step
 from support.server import Controller, Loop, Server
@@ -276,6 +276,25 @@ def test_a_watch_is_told_what_its_own_person_does_next_while_the_station_goes_on
         assert told(StationStanding.WORKING, steps[:3]) is None, "what somebody else does"
         for standing in (StationStanding.HELD, StationStanding.PAUSED, StationStanding.STOPPED):
             assert told(standing, steps) is None
+
+
+def test_a_watch_is_told_that_the_station_waits_for_an_order() -> None:
+    ended, waiting = example_job(state=JobState.ENDED), example_job(state=JobState.WAITING)
+    assert awaits_order(station(by_order=True, jobs={}))
+    assert awaits_order(station(by_order=True, jobs={"4710": ended}))
+    assert not awaits_order(station(by_order=True, jobs={"4710": ended, "4711": waiting}))
+    assert not awaits_order(station(by_order=True, jobs={}, standing=StationStanding.PAUSED))
+    assert not awaits_order(station(by_order=False, jobs={}))
+
+
+def test_a_watch_is_told_what_devices_do_and_not_what_they_may_do() -> None:
+    view = station()
+    running = [each.model_copy(update={"status": StepStatus.RUNNING}) for each in view.plan.steps]
+    view = view.model_copy(update={"plan": view.plan.model_copy(update={"steps": running}), "failing": []})
+    devices = [each.ability for each in running if not view.abilities[each.ability].human]
+    assert [each.ability for each in doing_in(view)] == devices
+    assert doing_in(view.model_copy(update={"failing": ["Robot UR10"]})) == []
+    assert doing_in(view.model_copy(update={"standing": StationStanding.SILENT})) == []
 
 
 def test_a_watch_is_told_how_far_the_order_in_work_is_or_else_the_operations_of_the_round() -> None:

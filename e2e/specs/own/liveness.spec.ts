@@ -128,6 +128,14 @@ test.describe('when a part of the station dies', () => {
 	});
 
 	test('a server that is gone is said to be gone', async ({ operate, watch, station }) => {
+		const safety = 'use the safety devices of the station';
+		station.server.signalTree('SIGSTOP');
+		await expect(operate.getByTestId('not-live')).toContainText(safety, { timeout: 2000 });
+		const hold = operate.getByTestId('stops').getByRole('button').last();
+		await hold.click();
+		await expect(hold, 'it is said at once that it is on its way').toHaveText('Sending', { timeout: 500 });
+		await expect(operate.getByTestId('stops').locator('..').getByRole('alert').filter({ hasText: 'Not sent' })).toContainText(safety, { timeout: 15_000 });
+		await expect(hold).toHaveText('Hold');
 		await station.server.kill();
 		await Promise.all([
 			expect(operate.getByTestId('not-live')).toContainText('connection to the server is lost', { timeout: 2000 }),

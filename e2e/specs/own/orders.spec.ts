@@ -34,7 +34,9 @@ async function doTasks(page: Page, until: () => Promise<boolean>): Promise<void>
 test('an order is stored, waits and says why, is worked, interrupted and resumed, and what was made is told', async ({ browse, complaints }) => {
 	test.slow(); // three orders, of which each takes its time
 	const eva = await browse(EVA, '/orders');
-	const row = (title: string, page = eva) => page.locator('[data-order]').filter({ has: page.getByRole('button', { name: title, exact: true }) });
+	// Nobody has given them a number: of the one that was drawn the end stands beside the description.
+	const row = (title: string, page = eva) =>
+		page.locator('[data-order]').filter({ has: page.getByRole('button', { name: new RegExp(`^${title} · [0-9a-f]{4}$`) }) });
 	const dialog = eva.getByRole('dialog');
 	const form = eva.getByRole('dialog', { name: 'New order' });
 	const newOrder = (): Promise<void> => eva.getByRole('button', { name: 'New order' }).click();
@@ -56,6 +58,21 @@ test('an order is stored, waits and says why, is worked, interrupted and resumed
 		await form.getByLabel('Priority').press('Enter');
 		await expect(form.getByLabel('Description')).toHaveValue('Engine 4711');
 		await expect(eva.locator('[data-order]')).toHaveCount(0);
+	});
+
+	await test.step('an order that has a number is called by it, and has its description below', async () => {
+		await form.getByRole('button', { name: 'Close' }).click();
+		await eva.evaluate(async () => {
+			const body = JSON.stringify({ id: 'D13-4719', work_master: 'truck_engine', description: 'Engine D13K 540', start: false });
+			await fetch('/api/v1/job-orders', { method: 'POST', headers: { 'Content-Type': 'application/json', 'Idempotency-Key': 'D13-4719' }, body });
+		});
+		const numbered = eva.locator('[data-order="D13-4719"]');
+		await expect(numbered.getByRole('button', { name: 'D13-4719', exact: true })).toBeVisible();
+		await expect(numbered).toContainText('Engine D13K 540');
+		await numbered.getByRole('button', { name: 'More for D13-4719' }).click();
+		await numbered.getByRole('button', { name: 'Withdraw' }).click();
+		await dialog.getByRole('button', { name: 'Withdraw' }).click();
+		await expect(numbered).toHaveCount(0);
 	});
 
 	await test.step('an order waits for people, and says so; the more urgent one is to begin first', async () => {
@@ -84,7 +101,7 @@ test('an order is stored, waits and says why, is worked, interrupted and resumed
 		await expect(eva.getByTestId('mode')).toHaveAttribute('data-production', 'started');
 		await eva.goto(new URL('/orders', eva.url()).href);
 		await expect(row('Engine 4712')).toHaveAttribute('data-state', 'Running');
-		await expect(row('Engine 4711')).toContainText('Engine 4712 is in work');
+		await expect(row('Engine 4711')).toContainText(/Engine 4712 · [0-9a-f]{4} is in work/);
 		await row('Engine 4712').getByRole('button', { name: 'Pause' }).click();
 		await dialog.getByLabel('Reason').fill('A bolt is missing');
 		await dialog.getByRole('button', { name: 'Pause' }).click();
@@ -119,7 +136,7 @@ test('an order is stored, waits and says why, is worked, interrupted and resumed
 		await expect(eva.getByRole('region', { name: 'Made today' }).getByRole('heading')).toContainText('1');
 		await store('Engine 4713', '0');
 		await expect(row('Engine 4713'), 'it is known by now how long one takes').toContainText(/ready \d/);
-		await expect(eva.getByTestId('order-line').getByText(/^Engine 4712, made from/)).toBeAttached();
+		await expect(eva.getByTestId('order-line').getByText(/^Engine 4712 · [0-9a-f]{4}, made from/)).toBeAttached();
 		await response.getByRole('button', { name: 'Engine 4712' }).click();
 		const told = eva.getByRole('dialog', { name: 'Engine 4712' });
 		await expect(told).toContainText('7 of 7 operations completed');

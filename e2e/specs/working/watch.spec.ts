@@ -41,6 +41,8 @@ test('a problem told on the watch is an alarm until it is solved, and the next t
 	await expect(alarm).toHaveAttribute('data-state', 'unacknowledged');
 	await expect(alarm).toContainText('a part is missing');
 	await expect(watch.getByTestId('problem')).toBeVisible();
+	// A small face has little room, and says which one all the same.
+	expect(await watch.getByTestId('problem').evaluate((element: HTMLElement) => element.innerText)).toMatch(/Part missing$/);
 	// The card of the alarm has told it: the task below refers to it.
 	await expect(operate.getByTestId('problem-above')).toHaveText('Its problem is told above');
 	await expect(operate.getByTestId('problem')).toHaveCount(0);

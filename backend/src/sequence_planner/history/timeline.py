@@ -64,8 +64,8 @@ class LineView(View):
     """What happened between two times: the records behind number `begin`, up to `end`.
 
     `first` and `last` are those of the whole journal. `running` had been started before, the operations `active` were
-    so, and `mode` was the mode then. Without `whole` there is too much for every start, end and plan to be a mark of
-    its own. `bins` counts the records in equal parts of the time.
+    so, `mode` was the mode then, and `alarms` had come and were not over: each as it came. Without `whole` there is too
+    much for every start, end and plan to be a mark of its own. `bins` counts the records in equal parts of the time.
     """
 
     first: PlaceView
@@ -75,6 +75,7 @@ class LineView(View):
     running: list[str]
     active: list[str]
     mode: str | None
+    alarms: list[MarkView]
     marks: list[MarkView]
     whole: bool
     bins: list[int]
@@ -182,12 +183,15 @@ def record_view(record: RunRecord) -> RunRecordView:
 
 MOST_READ: Final = 10_000  # records that are read one by one
 MOST_MARKS: Final = 3000
+MOST_ALARMS: Final = 300  # records of alarms that are read to find those that stand
 BINS: Final = 60
 ALARM: Final = "alarm"
 _ASKED, _ANSWERED = kind_of(Asked), kind_of(Answered)
 _SELDOM: Final = frozenset({*KINDS, BEGUN, ALARM, BY_HAND.name} - {TICKED, _ASKED, _ANSWERED})
 _TOLD: Final = ("started", "ended", "called_off", "given_up", "activated", "completed", "plan", "mode")
 _TELLING: Final = tuple(f'"{part}":' for part in _TOLD)
+_CAME: Final = ("came", "came again")
+_OVER: Final = ("returned", "ended")
 _PAGE: Final = 1000
 
 
@@ -212,6 +216,7 @@ def line(run: WholeRun, since: float, until: float) -> LineView | None:
         running=running,
         active=active,
         mode=_mode(run, before),
+        alarms=_standing(run, before),
         marks=marks[:MOST_MARKS],
         whole=whole,
         bins=_bins(run, since, until),
@@ -271,6 +276,22 @@ def _under_way(run: WholeRun, number: int) -> tuple[list[str], list[str]]:
             active.pop(name, None)
         active |= dict.fromkeys(content.get("activated", ()))
     return list(running), list(active)
+
+
+def _standing(run: WholeRun, number: int) -> list[MarkView]:
+    """Return the alarms that stood after a record, each as it came last; of very old ones nothing is known."""
+    seen: dict[str, bool] = {}
+    found: list[MarkView] = []
+    for record in run.before(number + 1, MOST_ALARMS, (ALARM, BEGUN)):
+        if record.kind == BEGUN:
+            break  # a controller that starts tells anew what stands
+        mark = _mark(record)
+        key, event = str(mark.content.get("alarm")), mark.content.get("event")
+        over = seen.setdefault(key, event in _OVER)
+        if event in _CAME and not over:
+            found.append(mark)
+            seen[key] = True
+    return found[::-1]
 
 
 def _mode(run: WholeRun, number: int) -> str | None:

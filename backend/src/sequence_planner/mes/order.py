@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Mapping, Sequence
 from enum import StrEnum
 from types import MappingProxyType
@@ -107,6 +108,8 @@ def allowed(state: OrderState, *, handed_over: bool, wish: Wish | None) -> tuple
 # A job order: what a MES wants to be made, and where that stands.
 
 LONGEST_TITLE = 200  # characters
+SHOWN_OF_DRAWN: Final = 4  # characters of a number that was drawn by lot
+_DRAWN: Final = re.compile(r"[0-9a-f]{16}")  # as the server draws them
 
 
 class OrderContent(DataModel):
@@ -121,6 +124,18 @@ class OrderContent(DataModel):
     priority: int = 0
     due: float | None = None
     earliest: float | None = None
+
+
+def title_of(id: str, description: str) -> str:
+    """Return what people call an order: its number, or what it is described as where the number was drawn by lot.
+
+    Of a drawn number the end alone tells two of the same description from each other.
+    """
+    if _DRAWN.fullmatch(id) is None:
+        return id[:LONGEST_TITLE]
+    mark = id[-SHOWN_OF_DRAWN:]
+    said = description.strip()
+    return f"{said[: LONGEST_TITLE - len(mark) - 3]} · {mark}" if said else mark
 
 
 class JobOrder(OrderContent):
@@ -168,7 +183,7 @@ class JobOrder(OrderContent):
     @property
     def title(self) -> str:
         """The name that people at the station call it by."""
-        return (self.description.strip() or self.id)[:LONGEST_TITLE]
+        return title_of(self.id, self.description)
 
 
 # Errors of the interface for job orders.

@@ -22,6 +22,7 @@ test('runs that began and ended by themselves are measured, and no others', () =
 			mark(5, 9, { ended: ['move'], started: ['move'] })
 		],
 		whole: true,
+		alarms: [],
 		bins: []
 	};
 	expect([...durationsOf(line, { from: 0, to: 10 })]).toEqual([['move', [3, 5]]]);

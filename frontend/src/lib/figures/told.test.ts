@@ -5,7 +5,7 @@ import { cycleLevel, first, madeLevel, orderOf, percentText, worked } from './to
 const AT = '2026-06-01T08:00:00Z';
 
 function figures(rest: Partial<Figures> = {}): Figures {
-	const made = { count: 0, planned: null, by_now: null };
+	const made = { count: 0, planned: null, by_now: null, by_order: 0, to_make: 0 };
 	return { time: 100, time_at: AT, day: 0, day_at: AT, in_work: [], made, cycle: null, availability: null, shift: null, next_shift: null, ...rest };
 }
 
@@ -19,20 +19,20 @@ test('of several products the one that was begun first is told', () => {
 	expect(first(null)).toBeUndefined();
 });
 
-test('which order of today is in work is told where orders are due, and there is one', () => {
-	const made = { count: 14, planned: 22, by_now: 15 };
-	expect(orderOf(figures({ made, in_work: [product('a', 3)] }))).toEqual({ n: 15, all: 22 });
+test('which order of today is in work is counted as on Orders: without what was made freely and what may not start', () => {
+	// Two of the three were made freely, and one of the seven is not released.
+	const made = { count: 3, planned: 7, by_now: 3, by_order: 1, to_make: 3 };
+	expect(orderOf(figures({ made, in_work: [product('a', 3)] }))).toEqual({ n: 2, all: 4 });
 	expect(orderOf(figures({ made }))).toBeNull();
 	expect(orderOf(figures({ made, in_work: [product(null, 3)] })), 'it is no order').toBeNull();
-	expect(orderOf(figures({ in_work: [product('a', 3)] })), 'nothing is due').toBeNull();
-	// One that is due tomorrow, when all of today are made.
-	expect(orderOf(figures({ made: { count: 22, planned: 22, by_now: 22 }, in_work: [product('a', 3)] }))).toBeNull();
+	// It is over since.
+	expect(orderOf(figures({ made: { ...made, to_make: 0 }, in_work: [product('a', 3)] }))).toBeNull();
 });
 
 test('what is made is compared with what is due, and with nothing where nothing is', () => {
-	expect(madeLevel(figures({ made: { count: 5, planned: 20, by_now: 10 } }))).toEqual({ part: 0.25, mark: 0.5 });
+	expect(madeLevel(figures({ made: { count: 5, planned: 20, by_now: 10, by_order: 5, to_make: 15 } }))).toEqual({ part: 0.25, mark: 0.5 });
 	expect(madeLevel(figures())).toBeNull();
-	expect(madeLevel(figures({ made: { count: null, planned: null, by_now: null } }))).toBeNull();
+	expect(madeLevel(figures({ made: { count: null, planned: null, by_now: null, by_order: 0, to_make: 0 } }))).toBeNull();
 	expect(madeLevel(null)).toBeNull();
 });
 

@@ -8,11 +8,10 @@ export function first(figures: Figures | null): Figures['in_work'][number] | und
 	return figures?.in_work.toSorted((a, b) => a.began - b.began)[0];
 }
 
-/** Which order of today the one in work is; null where nobody can say. */
+/** Which order of today the one in work is, of those that are made and may start, as Orders counts them; null without one. */
 export function orderOf(figures: Figures | null): { readonly n: number; readonly all: number } | null {
 	const made = figures?.made;
-	if (!made || made.count === null || made.planned === null) return null;
-	return first(figures)?.job && made.count < made.planned ? { n: made.count + 1, all: made.planned } : null;
+	return made && first(figures)?.job && made.to_make > 0 ? { n: made.by_order + 1, all: made.by_order + made.to_make } : null;
 }
 
 export interface Level {

@@ -13,7 +13,7 @@ function mark(number: number, time: number, kind: string, content: Mark['content
 function line(marks: Mark[], rest: Partial<TimeLine> = {}): TimeLine {
 	const first = { number: 1, time: 0 };
 	const last = { number: 99, time: 190 };
-	return { first, last, begin: 10, end: 99, running: [], active: [], mode: 'paused', marks, whole: true, bins: [], ...rest };
+	return { first, last, begin: 10, end: 99, running: [], active: [], mode: 'paused', alarms: [], marks, whole: true, bins: [], ...rest };
 }
 
 describe('what ran', () => {
@@ -88,6 +88,18 @@ test('what ran when its device did not go on is told from the others, with the c
 	const bars = (id: string) => lanes.find((each) => each.id === id)?.bars.map(({ failed, cause }) => [failed, cause]);
 	expect(bars('of tool')).toEqual([[true, 'The tool has stalled'], [undefined, undefined]]);
 	expect(bars('of robot')).toEqual([[undefined, undefined]]);
+});
+
+test('what did not go on is told from the others also where its alarm came before the window', () => {
+	const alarm = { event: 'came', kind: 'overdue', text: 'The tool has stalled. It turns', priority: 'high', resources: ['tool'], parts: [] };
+	const marks = [mark(13, 150, 'ticked', { ended: ['tool.run'] }), mark(14, 160, 'ticked', { started: ['tool.run'] })];
+	const past = line(marks, { running: ['tool.run'], alarms: [mark(4, 40, 'alarm', alarm)] });
+	const lanes = lanesOf(past, [], { window, until: Infinity, resources: ['tool'], names: { ...names, resourceOf: (id) => id.split('.')[0] ?? '' } });
+	const bars = lanes.find(({ id }) => id === 'of tool')?.bars;
+	expect(bars?.map(({ failed, cause, priority }) => [failed, cause, priority])).toEqual([
+		[true, 'The tool has stalled', 'high'],
+		[undefined, undefined, undefined]
+	]);
 });
 
 test('bars that last at the same time stand one below the other, in three rows at most', () => {

@@ -85,7 +85,7 @@ export function lanesOf(
 		const label = names.ability(ability);
 		byResource.set(of, [...(byResource.get(of) ?? []), ...bars.map((bar) => ({ ...bar, label }))]);
 	}
-	for (const [id, bars] of byResource) byResource.set(id, broken(bars, troublesOf(line, id)));
+	for (const [id, bars] of byResource) byResource.set(id, broken(bars, troublesOf(line, window, id)));
 	const operations = line.whole ? operationsOf(line, window, until) : [];
 	return [
 		{ id: 'mode', title: words.mode, bars: modesOf(line, window, until), spots: spots(MODE_KINDS) },
@@ -105,11 +105,13 @@ interface Trouble {
 	readonly priority: Priority;
 }
 
-/** When a device of a resource did not go on, and what was told of it. */
-function troublesOf({ marks }: TimeLine, resource: string): Trouble[] {
-	return marks.flatMap(({ kind, time, content }) => {
+/** When a device of a resource did not go on, and what was told of it; what stood at the beginning of the window was so then. */
+function troublesOf({ alarms, marks }: TimeLine, { from }: Window, resource: string): Trouble[] {
+	const stood = alarms.map((mark) => ({ ...mark, time: Math.max(mark.time, from) }));
+	const came = marks.filter(({ kind, content }) => kind === 'alarm' && (partOf(content, 'what') ?? content)['event'] === 'came');
+	return [...stood, ...came].flatMap(({ time, content }) => {
 		const what = partOf(content, 'what') ?? content;
-		if (kind !== 'alarm' || what['event'] !== 'came' || !BROKEN.has(what['kind']) || !textsOf(what['resources']).includes(resource)) return [];
+		if ( !BROKEN.has(what['kind']) || !textsOf(what['resources']).includes(resource)) return [];
 		const alarm = what as unknown as Alarm;
 		return [{ time, cause: leading(wordsOf(alarm).text)[0], priority: alarm.priority }];
 	});

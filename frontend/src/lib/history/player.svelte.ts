@@ -6,6 +6,8 @@ export const SPEEDS = [1, 4, 16] as const;
 const EVERY = 300;
 /** Seconds that pass at most between two looks: where the station is slow to tell, the past waits for it. */
 const MOST = 1;
+/** Milliseconds between two looks whether it is told how the station was then. */
+const SOON = 50;
 
 export class Player {
 	/** The moment that it has come to; null while it stands. */
@@ -29,6 +31,13 @@ export class Player {
 		this.time = null;
 	}
 
+	/** Waits until it is told how the station was at the chosen moment, so that nothing runs ahead of what is shown. */
+	async #shown(run: number): Promise<void> {
+		const history = this.#history;
+		const waits = (): boolean => history.momentRefusal === null && history.moment?.record.number !== history.place?.number;
+		while (run === this.#run && waits()) await new Promise((after) => setTimeout(after, SOON));
+	}
+
 	async #play(): Promise<void> {
 		const history = this.#history;
 		const run = ++this.#run;
@@ -39,6 +48,7 @@ export class Player {
 		this.time = time;
 		await history.chooseAt(time);
 		let shown = history.place?.number;
+		await this.#shown(run);
 		for (let last = performance.now(); run === this.#run; ) {
 			await new Promise((after) => setTimeout(after, EVERY));
 			if (run !== this.#run) return;
@@ -47,10 +57,13 @@ export class Player {
 			const now = performance.now();
 			time += Math.min((now - last) / 1000, MOST) * this.speed;
 			last = now;
-			this.time = Math.min(time, end);
-			await history.chooseAt(this.time);
+			const next = Math.min(time, end);
+			await history.chooseAt(next);
 			shown = history.place?.number;
-			if (time >= end && run === this.#run) this.stop();
+			await this.#shown(run);
+			if (run !== this.#run) return;
+			this.time = next;
+			if (time >= end) this.stop();
 		}
 	}
 }

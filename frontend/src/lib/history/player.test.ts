@@ -8,11 +8,17 @@ class Past {
 	line = { first: { number: 100, time: 100 }, last: { number: 130, time: 130 } } as TimeLine;
 	window = { from: 110, to: 130 };
 	place: Place | null = null;
+	moment: { record: { number: number } } | null = null;
+	momentRefusal = null;
+	/** Milliseconds until it is told how the station was. */
+	slow = 0;
 	readonly asked: number[] = [];
 
 	chooseAt(time: number): Promise<void> {
 		this.asked.push(time);
 		this.place = { number: Math.floor(time), time: Math.floor(time) };
+		const { number } = this.place;
+		setTimeout(() => (this.moment = { record: { number } }), this.slow);
 		return Promise.resolve();
 	}
 }
@@ -50,6 +56,18 @@ describe('the past runs on', () => {
 		expect(past.asked[0]).toBe(110);
 		expect(past.place?.number).toBe(130);
 		expect(player.time).toBeNull();
+	});
+
+	test('no further than the moment that is shown', async () => {
+		const past = new Past();
+		past.place = { number: 112, time: 112 };
+		past.slow = 900;
+		const player = playing(past, 4);
+		for (let looks = 0; looks < 100 && player.time !== null; looks++) {
+			await vi.advanceTimersByTimeAsync(100);
+			if (player.time !== null) expect(player.time - (past.moment?.record.number ?? 112)).toBeLessThanOrEqual(1);
+		}
+		expect(past.place.time).toBeGreaterThan(116);
 	});
 
 	test('no longer when somebody has chosen another moment', async () => {

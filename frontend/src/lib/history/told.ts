@@ -1,5 +1,6 @@
 /** A record of the run in words: what happened, on what, by whom and why. */
 import type { Alarm, Message } from '#lib/contract.ts';
+import { titleOf as orderTitle } from '#lib/orders/orders.ts';
 import { leading, told as said, wordsOf } from '#lib/text/message.ts';
 import { say } from '#lib/text/text.svelte.ts';
 import { plain } from '#lib/wording/values.ts';
@@ -100,9 +101,9 @@ export function told(record: Tellable, names: Names): Told {
 		case 'jobs-sequenced':
 			return { ...nothing, what: words.jobsSequenced };
 		case 'job-commanded':
-			return { ...nothing, what: words.jobTold[textOf(what['act'])] ?? '', on: textOf(what['job']) };
+			return { ...nothing, what: words.jobTold[textOf(what['act'])] ?? '', on: orderTitle({ id: textOf(what['job']), description: '' }) };
 		case 'job-forgotten':
-			return { ...nothing, what: words.jobForgotten, on: textOf(what['job']) };
+			return { ...nothing, what: words.jobForgotten, on: orderTitle({ id: textOf(what['job']), description: '' }) };
 		case 'alarm':
 			return { ...nothing, ...alarmed(what as unknown as Alarm), what: words.alarm[textOf(what['event'])] ?? textOf(what['event']), outcome: priorityOf(textOf(what['priority'])) };
 		case 'alarms-aside':

@@ -4,6 +4,7 @@ import type { Doing } from '#lib/resource/doing.ts';
 import { nextSteps, STUCK } from '#lib/plan/status.ts';
 import { runs } from '#lib/resource/running.ts';
 import { told } from '#lib/text/message.ts';
+import { awaitsOrder } from '#lib/task/standing.ts';
 import { inLanguage, say } from '#lib/text/text.svelte.ts';
 import { capital } from '#lib/wording/capital.ts';
 import { listed } from '#lib/wording/listed.ts';
@@ -190,7 +191,7 @@ export function happening(view: StationView): string {
 	if (wrong.size > 0) return [now, failing, silent].filter((each) => each !== '').join(' · ');
 	if (running.length === 0) {
 		// What a condition is called is told, never how it is written.
-		const waits = next === undefined ? '' : told(next.sentence, '');
+		const waits = next !== undefined ? told(next.sentence, '') : awaitsOrder(view) ? say().frame.nothingNext.noOrder : '';
 		return waits === '' ? texts.nothingMoves : texts.nothingMovesAnd(waits);
 	}
 	const then = next === undefined ? null : inSentence(next.title);

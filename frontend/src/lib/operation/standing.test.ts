@@ -27,6 +27,12 @@ test('by order it is the job that says what is done', () => {
 	});
 });
 
+test('by order nothing is done of a product that no job asks for', () => {
+	const ordered = operation({ for_jobs: true, job: null, began: 10, ended: 20 });
+	const found = standings({ by_order: true, jobs: {}, operations: { place: ordered, take: operation({ began: 10, ended: 20 }) } });
+	expect(found).toEqual({ place: 'waits', take: 'waits' });
+});
+
 test('one of which a step comes to no end has stopped, until that is over', () => {
 	const steps = [step('run', 'nutrunner', 0, { id: '7', status: 'running', started: 100 })];
 	const of = { active: true, active_since: 90 };

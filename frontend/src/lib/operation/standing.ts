@@ -13,6 +13,7 @@ export function standingsOf(view: StationView): Map<string, OperationStanding> {
 	const running = view.plan.steps.filter(({ status }) => status === 'running');
 	/** Whatever runs has come to no end: what it is for stands still, also where a newer plan has other steps for that. */
 	const stands = running.length > 0 && running.every((step) => stopped.includes(step));
+	const free = view.by_order && Object.keys(view.jobs).length === 0;
 	return new Map(
 		Object.entries(view.operations).map(([name, operation]) => {
 			// What is active before production is started is begun by nobody.
@@ -25,7 +26,8 @@ export function standingsOf(view: StationView): Map<string, OperationStanding> {
 			}
 			const asked = askedFor(view, name)?.how;
 			if (asked === 'done' || asked === 'skipped') return [name, 'done'];
-			const done = asked !== 'later' && asked !== 'now' && operation.ended !== null && operation.ended >= began;
+			// By order a round is that of a job: without one what was made before is no progress.
+			const done = !free && asked !== 'later' && asked !== 'now' && operation.ended !== null && operation.ended >= began;
 			return [name, done ? 'done' : 'waits'];
 		})
 	);

@@ -39,14 +39,20 @@ export function partFor({ lanes }: Pick<OrderLine, 'lanes'>, parts: readonly num
 	return fits.length > 0 ? Math.max(...fits) : Math.min(...parts);
 }
 
-/** What titles say apart from the words with which all of them begin: a short bar has room for that. */
+/** What titles say apart from what all of them begin with, in words and parts of numbers: a short bar has room for that. */
 export function ownWords(titles: readonly string[]): string[] {
 	if (new Set(titles).size < 2) return [...titles];
-	const all = titles.map((title) => title.split(' '));
+	const all = titles.map((title) => title.split(/(?<= |· |-)/));
 	const fewest = Math.min(...all.map(({ length }) => length));
 	let same = 0;
 	while (same < fewest - 1 && all.every((words) => words[same] === all[0]?.[same])) same += 1;
-	return all.map((words) => words.slice(same).join(' '));
+	return all.map((words) => words.slice(same).join(''));
+}
+
+/** The last part of each title, for bars that have no room for more; all of them where two have the same one. */
+export function lastParts(titles: readonly string[]): string[] {
+	const last = titles.map((title) => /[^ ·-]*$/.exec(title)?.[0] ?? '');
+	return new Set(last).size === new Set(titles).size && last.every(Boolean) ? last : [...titles];
 }
 
 /** The line of orders that are not over, in their order, and of what was made. */

@@ -1,8 +1,8 @@
 import { describe, expect, test } from 'vitest';
 import type { JobOrder, JobResponse, OrderOfWork } from '#lib/contract.ts';
 import { operation, view as viewOf } from '#lib/testing/view.ts';
-import { lineOf, ownWords, partFor } from './line.ts';
-import { actsOf, inOrder, isOfDay, lastEnd, lateBy, progressOf, secondsOf, standing, titleOf, waitsText } from './orders.ts';
+import { lastParts, lineOf, ownWords, partFor } from './line.ts';
+import { actsOf, inOrder, isOfDay, lastEnd, lateBy, nameOf, progressOf, secondsOf, standing, titleOf, waitsText } from './orders.ts';
 
 function order(id: string, rest: Partial<JobOrder> = {}): JobOrder {
 	return {
@@ -71,9 +71,18 @@ describe('orders are listed', () => {
 	});
 });
 
-test('an order without a description is called by its id', () => {
-	expect(titleOf(order('e-1', { description: '  ' }))).toBe('e-1');
-	expect(titleOf(order('e-1', { description: 'Engine 1' }))).toBe('Engine 1');
+test('an order is called by its number, and by its description where nobody has given it one', () => {
+	const drawn = '00f1a2b3c4d5e6f7';
+	expect(titleOf(order('D13-4711', { description: 'Engine D13K 540' }))).toBe('D13-4711');
+	expect(titleOf(order(drawn, { description: ' Engine D13K 540 ' }))).toBe('Engine D13K 540 · e6f7');
+	expect(titleOf(order(drawn, { description: '  ' }))).toBe('e6f7');
+});
+
+test('a card has the number as its title and the description below it, and no word twice', () => {
+	const drawn = '00f1a2b3c4d5e6f7';
+	expect(nameOf(order('D13-4711', { description: 'Engine D13K 540' }))).toEqual({ name: 'D13-4711', mark: '', said: 'Engine D13K 540' });
+	expect(nameOf(order('D13-4711', { description: 'D13-4711' }))).toEqual({ name: 'D13-4711', mark: '', said: '' });
+	expect(nameOf(order(drawn, { description: 'Engine D13K 540' }))).toEqual({ name: 'Engine D13K 540', mark: 'e6f7', said: '' });
 });
 
 describe('how late an order is', () => {
@@ -220,6 +229,15 @@ test('a bar says what is its own', () => {
 	expect(ownWords(['Engine', 'Engine D11-0288'])).toEqual(['Engine', 'Engine D11-0288']);
 	expect(ownWords(['Engine D13-4711'])).toEqual(['Engine D13-4711']);
 	expect(ownWords([])).toEqual([]);
+	expect(ownWords(['D13-4711', 'D13-4712']), 'parts of a number').toEqual(['4711', '4712']);
+	expect(ownWords(['Engine D13K 540 · a1b2', 'Engine D13K 540 · c3d4'])).toEqual(['a1b2', 'c3d4']);
+});
+
+test('a bar with little room has the end of the number, unless two have the same', () => {
+	expect(lastParts(['D13-4711', 'D11-0288'])).toEqual(['4711', '0288']);
+	expect(lastParts(['D13-4711', 'D13-4711'])).toEqual(['4711', '4711']);
+	expect(lastParts(['D13-4711', 'D11-4711'])).toEqual(['D13-4711', 'D11-4711']);
+	expect(lastParts(['Engine · a1b2', 'D13-4711'])).toEqual(['a1b2', '4711']);
 });
 
 test('a local time means the moment that it names here', () => {

@@ -20,9 +20,31 @@ export type Stand = keyof typeof STANDS;
 /** What is most likely wanted of an order; all else that it allows is in its menu. */
 const FIRST: readonly OrderCommand[] = ['Start', 'Resume', 'Pause'];
 
-/** What an order is called. */
-export function titleOf({ description, id }: Pick<JobOrder, 'description' | 'id'>): string {
-	return description.trim() || id;
+/** A number that the server has drawn by lot says nothing to people; its end tells orders of one description apart. */
+const DRAWN = /^[0-9a-f]{16}$/;
+const SHOWN_OF_DRAWN = 4;
+
+export interface OrderName {
+	/** The number of the order, or what it is described as where nobody has given it a number. */
+	readonly name: string;
+	/** The end of a number that was drawn; empty where it is the name. */
+	readonly mark: string;
+	/** What else is said of it. */
+	readonly said: string;
+}
+
+/** What stands on the card of an order. */
+export function nameOf({ description, id }: Pick<JobOrder, 'description' | 'id'>): OrderName {
+	const said = description.trim();
+	if (!DRAWN.test(id)) return { name: id, mark: '', said: said === id ? '' : said };
+	const mark = id.slice(-SHOWN_OF_DRAWN);
+	return said ? { name: said, mark, said: '' } : { name: mark, mark: '', said: '' };
+}
+
+/** What an order is called in a sentence; the station calls its job the same. */
+export function titleOf(order: Pick<JobOrder, 'description' | 'id'>): string {
+	const { name, mark } = nameOf(order);
+	return mark ? `${name} · ${mark}` : name;
 }
 
 /** Each once, as it was last: lists that were read one after the other may have the same one in two states. */

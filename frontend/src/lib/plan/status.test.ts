@@ -15,6 +15,8 @@ test.each([
 	['planning', view({ plan: idle, operations: { a: active } })],
 	['idle', view({ plan: idle, operations: { a: { ...active, active: false } } })],
 	['order', view({ plan: idle, jobs: { a: { state: 'paused' } as Job } })],
+	['noOrder', view({ plan: idle, by_order: true })],
+	['noOrder', view({ plan: idle, by_order: true, jobs: { a: { state: 'ended', ended: 5 } as Job } })],
 	['none', view({ mode: 'restart', plan: { ...PLAN, status: 'none' } })]
 ])('no next start is said as %s, and never as nothing to plan while something is active', (said, station) => {
 	expect(nothingNext(station)).toBe(said);

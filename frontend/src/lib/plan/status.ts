@@ -1,6 +1,7 @@
 /** How the status of a step is drawn, whose turn it is, and why it is nobody's. */
 import { byUrgency, isOver, type Alarms } from '#lib/alarm/priority.ts';
 import type { Alarm, Plan, PlanStep, Priority, StationView, StepStatus } from '#lib/contract.ts';
+import { awaitsOrder } from '#lib/task/standing.ts';
 import type { Text } from '#lib/text/text.svelte.ts';
 
 /** A shape for each status, so that none has to be told by colour. */
@@ -21,7 +22,8 @@ export function nothingNext(view: StationView): keyof Text['frame']['nothingNext
 	if (plan.status === 'followed') return 'followed';
 	// What is active is planned for as soon as the controller comes to it.
 	if (Object.values(view.operations).some((operation) => operation.active)) return 'planning';
-	return Object.values(view.jobs).some(({ state }) => state === 'paused') ? 'order' : 'idle';
+	if (Object.values(view.jobs).some(({ state }) => state === 'paused')) return 'order';
+	return awaitsOrder(view) ? 'noOrder' : 'idle';
 }
 
 /** The people that a plan waits for: nothing else runs, and their tasks take longer than expected. */

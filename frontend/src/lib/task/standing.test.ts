@@ -1,5 +1,7 @@
 import { expect, test } from 'vitest';
-import { nextText, progressIn, stateText, toneOf } from './standing.ts';
+import type { StationView } from '#lib/contract.ts';
+import { PLAN, step } from '#lib/testing/view.ts';
+import { awaitsOrder, doingIn, nextText, progressIn, stateText, toneOf } from './standing.ts';
 
 test('what is most in the way is said of the station: that it stands, then what is not heard, then what needs help', () => {
 	expect(stateText('working', [], [])).toBe('');
@@ -42,4 +44,24 @@ test('how far the station is: of the order in work, or of the operations since t
 	// What was completed before this round is not done in it.
 	expect(of({}, [operation(false, 10, 12), operation(false, 5, 8), operation(true, 12, 9)])).toEqual({ done: 1, all: 3 });
 	expect(of({}, [])).toBeNull();
+});
+
+test('that the station waits for an order is said where it could make one, and none may start', () => {
+	const free = { by_order: true, standing: 'working', jobs: {} } as const;
+	const job = (state: string): StationView['jobs'] => ({ a: { state, ended: state === 'ended' ? 5 : null } as StationView['jobs'][string] });
+	expect(awaitsOrder(free)).toBe(true);
+	expect(awaitsOrder({ ...free, jobs: job('ended') })).toBe(true);
+	expect(awaitsOrder({ ...free, jobs: job('waiting') })).toBe(false);
+	expect(awaitsOrder({ ...free, jobs: job('paused') })).toBe(false);
+	expect(awaitsOrder({ ...free, standing: 'held' })).toBe(false);
+	expect(awaitsOrder({ ...free, by_order: false })).toBe(false);
+});
+
+test('what devices do is told, and not what people do or what may be so', () => {
+	const steps = [step('robot.move', 'robot', 0, { status: 'running' }), step('operator.place', 'operator', 0, { status: 'running' }), step('robot.wait', 'robot', 1)];
+	const abilities = { 'robot.move': { human: false }, 'operator.place': { human: true } } as unknown as StationView['abilities'];
+	const now: Parameters<typeof doingIn>[0] = { plan: { ...PLAN, steps }, abilities, standing: 'working', failing: [] };
+	expect(doingIn(now).map((each) => (each as { ability?: string }).ability)).toEqual([steps[0]?.ability]);
+	expect(doingIn({ ...now, failing: ['Robot'] })).toEqual([]);
+	expect(doingIn({ ...now, standing: 'silent' })).toEqual([]);
 });

@@ -53,3 +53,14 @@ export function progressIn({ jobs, operations, by_order: byOrder }: Pick<Station
 	const began = first.active_since ?? first.began ?? 0;
 	return { done: all.filter(({ active, ended }) => !active && ended !== null && ended >= began).length, all: all.length };
 }
+
+/** The same as a watch is told: what devices do now. What is not heard may do it or not. */
+export function doingIn({ plan, abilities, standing, failing }: Pick<StationView, 'plan' | 'abilities' | 'standing' | 'failing'>): { readonly title: string }[] {
+	if (standing !== 'working' || failing.length > 0) return [];
+	return plan.steps.filter(({ status, ability }) => status === 'running' && !abilities[ability]?.human);
+}
+
+/** Whether nothing is made as the station works by order and no order may start. */
+export function awaitsOrder({ by_order: byOrder, standing, jobs }: Pick<StationView, 'by_order' | 'standing' | 'jobs'>): boolean {
+	return byOrder && whyItStands(standing) === '' && Object.values(jobs).every(({ ended }) => ended !== null);
+}

@@ -4,7 +4,6 @@
  */
 import { common } from './en/common.ts';
 import { door } from './en/door.ts';
-import { pages } from './en/pages.ts';
 import { watch } from './en/watch.ts';
 
 /** A refusal says itself in English what it says: its texts need not be brought along for that. */
@@ -16,6 +15,5 @@ export const front = {
 	common,
 	door,
 	messages,
-	pages,
 	watch
 };

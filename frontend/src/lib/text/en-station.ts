@@ -13,8 +13,9 @@ import messages from './en/messages.json';
 import { mimic } from './en/mimic.ts';
 import { operate } from './en/operate.ts';
 import { orders } from './en/orders.ts';
+import { pages } from './en/pages.ts';
 import { restart } from './en/restart.ts';
 import { state } from './en/state.ts';
 import { trace } from './en/trace.ts';
 
-export const station = { ...front, messages: { ...refusals, ...messages }, account, alarms, figures, frame, history, mimic, operate, orders, restart, state, trace };
+export const station = { ...front, messages: { ...refusals, ...messages }, account, alarms, figures, frame, history, mimic, operate, orders, pages, restart, state, trace };

@@ -4,8 +4,7 @@
  */
 import { common } from './sv/common.ts';
 import { door } from './sv/door.ts';
-import { pages } from './sv/pages.ts';
 import { watch } from './sv/watch.ts';
 import type { Front } from './text.svelte.ts';
 
-export const front: Front = { locale: 'sv-SE', common, door, messages: {}, pages, watch };
+export const front: Front = { locale: 'sv-SE', common, door, messages: {}, watch };

@@ -11,9 +11,10 @@ import { mimic } from './sv/mimic.ts';
 import messages from './sv/messages.json';
 import { operate } from './sv/operate.ts';
 import { orders } from './sv/orders.ts';
+import { pages } from './sv/pages.ts';
 import { restart } from './sv/restart.ts';
 import { state } from './sv/state.ts';
 import { trace } from './sv/trace.ts';
 import type { OfStation } from './text.svelte.ts';
 
-export const station: OfStation = { ...front, account, alarms, figures, frame, history, mimic, operate, orders, restart, state, trace, messages: { ...refusals, ...messages, ...findings } };
+export const station: OfStation = { ...front, account, alarms, figures, frame, history, mimic, operate, orders, pages, restart, state, trace, messages: { ...refusals, ...messages, ...findings } };

@@ -135,7 +135,7 @@ class JobHandler:
         if command.on == self._jobs.by_order:
             return
         if not command.on and (under_way := self._jobs.under_way):
-            named = ", ".join(job.id for job in under_way)
+            named = ", ".join(job.title for job in under_way)
             raise CommandRefused("jobs-under-way", message("refused.jobs-under-way.named", jobs=named))
         self._execution.set_by_order(command.on, command.actor.name, command.reason, moment)
 

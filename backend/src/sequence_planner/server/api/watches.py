@@ -149,6 +149,13 @@ class WatchProgress(AnswerModel):
     all: int
 
 
+class WatchDoing(AnswerModel):
+    """Something that a device does now."""
+
+    ability: str
+    title: str
+
+
 class WatchSnapshot(StreamPart):
     """The tasks of the watch's own resource, by id, as of `time`; `station` is the station's title. `age` is as in the
     station's own stream.
@@ -156,6 +163,7 @@ class WatchSnapshot(StreamPart):
     `standing` says whether anything starts by itself, `silent` which devices are not heard, `failing` which of
     the others do not do what they should. Where any of these means that help is needed, `alarm` is the most urgent one.
     `next` is null where nothing is planned, or nothing starts by itself; `progress` where nothing is in work.
+    `doing` is what devices do now by the plan; `awaits_order` says that nothing is made as no order may start.
     """
 
     kind: Literal["watch"]
@@ -169,6 +177,8 @@ class WatchSnapshot(StreamPart):
     alarm: WatchAlarm | None
     next: WatchNext | None
     progress: WatchProgress | None
+    doing: list[WatchDoing]
+    awaits_order: bool
     tasks: dict[str, TaskView]
 
 

@@ -13,7 +13,7 @@ from sequence_planner.core.clock import iso
 from sequence_planner.mes import orders
 from sequence_planner.mes.expected import NOBODY_KNOWS
 from sequence_planner.mes.figures import DayFigures, MadeProduct, end_of_day, last_operation, start_of_day
-from sequence_planner.mes.order import JobOrder
+from sequence_planner.mes.order import JobOrder, OrderState
 from sequence_planner.mes.shifts import Shift, shift_after, shift_at
 from sequence_planner.server.dependencies import AnswerModel
 from sequence_planner.server.services.identity import IdentityService
@@ -36,12 +36,15 @@ class MadeToday(AnswerModel):
     """How many products were completed today.
 
     Of `planned` ones, with those whose orders are due today or are late; `by_now` are due by now. Both are null where
-    no order is due. `count` is null where nobody knows, as the model does not tell when a product is done.
+    no order is due. `count` is null where nobody knows, as the model does not tell when a product is done. `by_order`
+    were made for orders, and `to_make` are the orders that may start and are not over.
     """
 
     count: int | None
     planned: int | None
     by_now: int | None
+    by_order: int
+    to_make: int
 
 
 class CycleFigures(AnswerModel):
@@ -130,7 +133,7 @@ async def figures_of(desk: OrderService, office: IdentityService, view: StationV
         time=now,
         day=start_of_day(now),
         in_work=in_work,
-        made=_made(known, due, desk.orders, now) if tells else MadeToday(count=None, planned=None, by_now=None),
+        made=_made(known, due, desk.orders, now, tells=tells),
         cycle=_cycle(desk, known, in_work),
         availability=_availability(known),
         shift=None if on is None else _shift(known, on, now, tells=tells),
@@ -161,15 +164,20 @@ def _in_work(
     return found
 
 
-def _made(known: DayFigures, done: Sequence[float], still_open: Sequence[JobOrder], now: float) -> MadeToday:
+def _made(
+    known: DayFigures, done: Sequence[float], still_open: Sequence[JobOrder], now: float, *, tells: bool
+) -> MadeToday:
     """Count what was made, of which these were due then, and what is to be made by tonight."""
     tonight = end_of_day(now)
+    by_order = sum(each.job is not None for each in known.made)
+    to_make = sum(each.state is not OrderState.NOT_ALLOWED_TO_START for each in still_open)
+    count = known.count if tells else None
     to_do = [each.due for each in still_open if each.due is not None and each.due < tonight]
-    if not to_do and not any(each < tonight for each in done):
-        return MadeToday(count=known.count, planned=None, by_now=None)
-    planned = known.count + len(to_do)
+    if count is None or (not to_do and not any(each < tonight for each in done)):
+        return MadeToday(count=count, planned=None, by_now=None, by_order=by_order, to_make=to_make)
+    planned = count + len(to_do)
     later = sum(each > now for each in (*done, *to_do))
-    return MadeToday(count=known.count, planned=planned, by_now=planned - later)
+    return MadeToday(count=count, planned=planned, by_now=planned - later, by_order=by_order, to_make=to_make)
 
 
 def _cycle(desk: OrderService, known: DayFigures, in_work: Sequence[ProductInWork]) -> CycleFigures | None:

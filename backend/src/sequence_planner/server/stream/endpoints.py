@@ -29,7 +29,7 @@ from sequence_planner.core.actor import Actor
 from sequence_planner.core.data_models import complained
 from sequence_planner.core.storage_error import StorageError
 from sequence_planner.execution.vocabulary import JobState
-from sequence_planner.server.api.watches import WatchAlarm, WatchNext, WatchProgress, WatchSnapshot
+from sequence_planner.server.api.watches import WatchAlarm, WatchDoing, WatchNext, WatchProgress, WatchSnapshot
 from sequence_planner.server.auth import Access, allowed, watch_only
 from sequence_planner.server.errors import ProblemFound
 from sequence_planner.server.interface import interface
@@ -224,6 +224,22 @@ def progress_of(view: StationView) -> WatchProgress | None:
     return WatchProgress(done=len(done), all=len(operations))
 
 
+def doing_in(view: StationView) -> list[WatchDoing]:
+    """Return what devices do by the plan. What is not heard may do it or not, and so may what does not go on."""
+    if view.standing is not StationStanding.WORKING or view.failing:
+        return []
+    running = [each for each in view.plan.steps if each.status is StepStatus.RUNNING]
+    return [
+        WatchDoing(ability=each.ability, title=each.title) for each in running if not view.abilities[each.ability].human
+    ]
+
+
+def awaits_order(view: StationView) -> bool:
+    """Return whether nothing is made as the station works by order and no order may start."""
+    is_working = view.standing in (StationStanding.WORKING, StationStanding.SILENT)
+    return view.by_order and is_working and all(job.state.is_over for job in view.jobs.values())
+
+
 class WatchShow:
     """The tasks of each resource, told when they change and each second, and when the controller falls silent."""
 
@@ -288,6 +304,8 @@ class WatchShow:
             alarm=watch_alarm(view),
             next=next_task(view, resource),
             progress=progress_of(view),
+            doing=doing_in(view),
+            awaits_order=awaits_order(view),
             tasks=own_tasks(view, resource),
         ).model_dump_json()
 

@@ -1,25 +1,14 @@
 /** What more than one room says. */
 export const common = {
 	product: 'Sequence Planner',
-	noStation: 'Nothing is known of the station yet.',
 	old: 'old',
-	/** Of what is not live. */
-	asOf: (clock: string): string => `as it was at ${clock}`,
 	live: 'live',
 	now: 'now',
 	cancel: 'Cancel',
 	close: 'Close',
 	sending: 'Sending',
 	done: 'Done',
-	/** Of a chart. */
-	asTable: 'as table',
-	takeBack: 'Take back',
-	/** Why, in the journal. */
-	takenBack: 'Taken back at once',
 	reason: 'Reason',
-	reasonMissing: 'Say why: it is written into the journal.',
-	/** Of a field. */
-	needed: '(needed)',
 	optional: '(optional)',
 	unknown: 'unknown',
 	yes: 'yes',

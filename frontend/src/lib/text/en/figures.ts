@@ -10,6 +10,7 @@ export const figures = {
 	afterWork: (seconds: number): string => `After ${seconds} s of work`,
 	inWork: 'In work',
 	orderOf: (n: number, all: number): string => `In work · order ${n} of ${all}`,
+	nthOrder: (n: number, all: number): string => `Order ${n} of ${all}`,
 	more: (n: number): string => `+${n}`,
 	noOrder: 'No order',
 	noProduct: 'No product',

@@ -81,6 +81,9 @@ export const frame = {
 	connecting: 'Connecting',
 	notLiveStrong: 'Not live.',
 	lastHeard: (age: string): string => `This view is ${age} old. The station may have moved on.`,
+	/** They are sent from an old view too; whether they arrive nobody knows. */
+	relyNot: 'Nothing that is sent from here, Pause and Hold neither, is sure to arrive.',
+	safetyDevices: 'To stop, use the safety devices of the station.',
 	notUnderstood: (what: string): string => `The server did not understand this page: ${what}`,
 	/** Why a view is old. */
 	causes: {
@@ -97,6 +100,7 @@ export const frame = {
 	nothingNext: {
 		idle: 'nothing to plan',
 		order: 'the order is paused; it is resumed under Orders',
+		noOrder: 'waits for an order that may start',
 		planning: 'a plan is being looked for',
 		followed: 'nothing more to start',
 		waits: 'waits for the running steps',
@@ -146,5 +150,16 @@ export const frame = {
 			done: (operation: string): string => `“${operation}” is done. When does it begin again?`
 		},
 		groups: { act: 'Possible now', page: 'Pages', alarm: 'Alarms', operation: 'Operations', ability: 'Abilities', variable: 'Variables' }
-	}
+	},
+	noStation: 'Nothing is known of the station yet.',
+	/** Of what is not live. */
+	asOf: (clock: string): string => `as it was at ${clock}`,
+	/** Of a chart. */
+	asTable: 'as table',
+	takeBack: 'Take back',
+	/** Why, in the journal. */
+	takenBack: 'Taken back at once',
+	reasonMissing: 'Say why: it is written into the journal.',
+	/** Of a field. */
+	needed: '(needed)'
 };

@@ -129,6 +129,7 @@ export const orders = {
 	startsMade: (n: number): string => count(n, 'start of an ability', 'starts of abilities'),
 	corrections: (n: number): string => count(n, 'correction', 'corrections'),
 	deviations: (n: number): string => count(n, 'deviation', 'deviations'),
+	wentOtherwise: 'What went otherwise',
 	details: (title: string): string => `What was made for ${title}`,
 	operation: 'Operation',
 	from: 'From',

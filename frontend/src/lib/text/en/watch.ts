@@ -1,5 +1,8 @@
 /** The watch, and tasks wherever they are shown. */
 export const watch = {
+	/** What this page is called, and the one to which who may goes on. */
+	page: 'Operator view',
+	operate: 'Operate',
 	forYou: 'For you',
 	nothingToDo: 'Nothing to do',
 	nothingWhenHeard: 'Nothing when last heard',
@@ -22,6 +25,9 @@ export const watch = {
 	recorded: 'Done is recorded.',
 	/** With nothing to do. */
 	progress: (done: number, all: number): string => `${done} of ${all} done`,
+	awaitsOrder: 'The station waits for an order.',
+	/** What devices do meanwhile. */
+	doing: (what: string): string => `Under way: ${what}`,
 	comes: 'Your next task comes here.',
 	/** What the plan has for somebody next, and in how many seconds. */
 	next: (title: string, seconds: number | null): string =>

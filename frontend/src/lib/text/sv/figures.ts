@@ -10,6 +10,7 @@ export const figures: Text['figures'] = {
 	afterWork: (seconds) => `Efter ${seconds} s arbete`,
 	inWork: 'I arbete',
 	orderOf: (n, all) => `I arbete · order ${n} av ${all}`,
+	nthOrder: (n, all) => `Order ${n} av ${all}`,
 	more: (n) => `+${n}`,
 	noOrder: 'Ingen order',
 	noProduct: 'Ingen produkt',

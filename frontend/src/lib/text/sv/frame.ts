@@ -76,6 +76,8 @@ export const frame: Text['frame'] = {
 	connecting: 'Ansluter',
 	notLiveStrong: 'Inte direkt.',
 	lastHeard: (age) => `Det som visas är ${age} gammalt. Stationen kan ha gått vidare.`,
+	relyNot: 'Inget som skickas härifrån kommer säkert fram, inte heller Pausa och Stoppa.',
+	safetyDevices: 'Stoppa med stationens skyddsanordningar, till exempel nödstoppet.',
 	notUnderstood: (what) => `Servern förstod inte den här sidan: ${what}`,
 	causes: {
 		connecting: 'Ansluter till stationen.',
@@ -89,6 +91,7 @@ export const frame: Text['frame'] = {
 	nothingNext: {
 		idle: 'inget att planera',
 		order: 'ordern är pausad; den återupptas under Order',
+		noOrder: 'väntar på en order som får börja',
 		planning: 'en plan söks',
 		followed: 'inget mer att starta',
 		waits: 'väntar på stegen som pågår',
@@ -135,5 +138,12 @@ export const frame: Text['frame'] = {
 			done: (operation) => `”${operation}” är klar. När börjar den igen?`
 		},
 		groups: { act: 'Möjligt nu', page: 'Sidor', alarm: 'Larm', operation: 'Operationer', ability: 'Förmågor', variable: 'Variabler' }
-	}
+	},
+	noStation: 'Inget är känt om stationen än.',
+	asOf: (clock) => `som det var ${clock}`,
+	asTable: 'som tabell',
+	takeBack: 'Ta tillbaka',
+	takenBack: 'Genast tillbakataget',
+	reasonMissing: 'Skriv varför: det står i journalen.',
+	needed: '(måste anges)'
 };

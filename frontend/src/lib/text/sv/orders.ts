@@ -128,6 +128,7 @@ export const orders: Text['orders'] = {
 	startsMade: (n) => count(n, 'start av en förmåga', 'starter av förmågor'),
 	corrections: (n) => count(n, 'rättelse', 'rättelser'),
 	deviations: (n) => count(n, 'avvikelse', 'avvikelser'),
+	wentOtherwise: 'Vad som blev annorlunda',
 	details: (title) => `Vad som tillverkades för ${title}`,
 	operation: 'Operation',
 	from: 'Från',

@@ -1,6 +1,8 @@
 import type { Text } from '../text.svelte.ts';
 
 export const watch: Text['watch'] = {
+	page: 'Operatörsvy',
+	operate: 'Drift',
 	forYou: 'För dig',
 	nothingToDo: 'Inget att göra',
 	nothingWhenHeard: 'Inget när den senast hördes',
@@ -18,6 +20,8 @@ export const watch: Text['watch'] = {
 	still: 'Inget startar än.',
 	recorded: 'Klart antecknas.',
 	progress: (done, all) => `${done} av ${all} klara`,
+	awaitsOrder: 'Stationen väntar på en order.',
+	doing: (what) => `Pågår: ${what}`,
 	comes: 'Din nästa uppgift kommer hit.',
 	next: (title, seconds) =>
 		seconds === null ? `Sedan: ${title}` : seconds < 1 ? `${title} strax` : `${title} om\u00a0ungefär\u00a0${seconds < 60 ? `${seconds}\u00a0s` : `${Math.round(seconds / 60)}\u00a0min`}`,
