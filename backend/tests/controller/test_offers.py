@@ -262,6 +262,56 @@ def test_where_there_was_time_for_corrections_alone_asking_again_finds_more(monk
     asyncio.run(scenario())
 
 
+def test_an_incomplete_answer_is_never_the_last_word_and_loses_nothing_that_was_found(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    async def scenario() -> None:
+        async with desk() as there:
+            at_leisure, asked = there.advisor.answer, 0
+
+            async def answer(request: AdviceRequest, deadline: float) -> Advice:
+                nonlocal asked
+                advice = await at_leisure(request, deadline)
+                asked += 1
+                if asked > 2:
+                    return advice
+                # First what is done alone, which used to be the last word, then what is said alone.
+                said = asked == 2
+                part = tuple(each for each in advice.offers if bool(each.corrections) == said)
+                return replace(advice, offers=part, complete=False)
+
+            monkeypatch.setattr(there.advisor, "answer", answer)
+            monkeypatch.setattr(proposals, "WAITING", 60.0)  # the advisor is only being started
+            there.execution.start_production()
+            there.correct(loaded=True)
+            there.tick()
+            there.believe(jammed=True)
+            there.tick()
+            first = await there.offers.advice(AskAdvice())
+            assert first.offers
+            assert not any(offer.corrections for offer in first.offers)
+            assert not first.complete
+            second = await there.offers.advice(AskAdvice())
+            found = [offer.title for offer in second.offers]
+            assert {offer.title for offer in first.offers} < set(found)
+            assert second.offers[-1].corrections
+            assert not second.complete
+            third = await there.offers.advice(AskAdvice())
+            assert third.complete
+            assert await there.offers.advice(AskAdvice()) is third
+            assert asked == 3
+
+            # What was found in one mode is so in another, and is not looked for once more.
+            there.enter(Mode.RESTART)
+            entered = await there.offers.advice(AskAdvice())
+            assert [offer.title for offer in entered.offers] == [offer.title for offer in third.offers]
+            assert entered.revision == there.execution.revision > third.revision
+            assert asked == 3
+            there.take(next(offer for offer in entered.offers if not offer.corrections))
+
+    asyncio.run(scenario())
+
+
 def test_all_who_ask_at_once_get_one_answer_though_one_of_them_leaves(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(proposals, "WAITING", 60.0)  # the advisor is only being started
 
