@@ -132,7 +132,8 @@ class Offers:
 
     async def _searched(self, request: AdviceRequest, deadline: float) -> Advice:
         until = Timestamp.now().monotonic + deadline
-        return await self._advisor.answer(replace(request, deadline=deadline, until=until), deadline + WAITING)
+        asked = replace(request, deadline=deadline, until=until, patient=deadline > request.deadline)
+        return await self._advisor.answer(asked, deadline + WAITING)
 
     async def _searched_on(self, request: AdviceRequest, before: Advice) -> Advice:
         """Search again with more time. What was found `before` still leads on, also where less is found now."""

@@ -66,7 +66,9 @@ class Advisor:
         here = self._situation(request)
         station = self._station(stalls(self._automaton, here.state, request.stalled))
         awaited = written_by(self._automaton, request.stalled - request.explained)
-        consultation = RecoverySearch(station, here, budget.part(_SHARE), request.violated, awaited)
+        consultation = RecoverySearch(
+            station, here, budget.part(_SHARE), request.violated, awaited, patient=request.patient
+        )
 
         def search() -> Iterator[RecoveryProposal]:
             right = written_by(self._automaton, request.explained) - awaited

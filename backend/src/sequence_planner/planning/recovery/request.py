@@ -29,7 +29,8 @@ class AdviceRequest(Immutable):
     when they were known last. The formulas of `violated` goals were, and their operations must be reset first. No
     correction or physical change makes an `impossible` pair of values, and none is one of a `fixed` variable. `waiting`
     are the goals of operations that become active as soon as their preconditions hold. Whoever asks hears `until` that
-    moment on the clock of `time.monotonic`, also where work on it begins late.
+    moment on the clock of `time.monotonic`, also where work on it begins late. One who is `patient` knows ways already:
+    all the time is for what else there is.
     """
 
     state: State
@@ -45,6 +46,7 @@ class AdviceRequest(Immutable):
     deadline: float = 1.8
     until: float = inf
     longest: int = LONGEST
+    patient: bool = False
 
 
 class GoalPlanRequest(Immutable):
