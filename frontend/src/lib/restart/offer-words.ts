@@ -39,12 +39,17 @@ export function timesOf({ effort, errand, then }: WayOffer): { readonly own: num
 
 /** What it is called; where it only says what is true, with the warning that somebody has to have looked. */
 export function titleOf(offer: WayOffer): string {
-	return offer.only_if_checked && onlySays(offer) ? say().restart.ways.onlyIf(saidOf(offer)) : told(offer.title_message, offer.title);
+	return offer.only_if_checked && onlySays(offer) && tasksOf(offer).length === 0 ? say().restart.ways.onlyIf(saidOf(offer)) : told(offer.title_message, offer.title);
 }
 
 /** That a variable has the value it would get: `pair 4 is placed`. */
 export function soOf({ so, name, then }: WayOffer['corrections'][number]): string {
 	return told(so, say().restart.ways.is(inSentence(nameOf(name, null)), valueOf(name, then)));
+}
+
+/** What a person does before it is true: a task, with the instruction for it. */
+export function tasksOf({ corrections }: Pick<WayOffer, 'corrections'>): string[] {
+	return corrections.flatMap(({ by_hand: how }) => (how === null ? [] : [told(how, '')]));
 }
 
 /** What it says of the product. */
@@ -67,8 +72,8 @@ export function stillAsked(view: StationView, { online, in_service, physical }: 
 }
 
 /** So much a person does by hand, before it or within it. */
-export function handsOf({ physical, online, in_service, errand }: WayOffer): number {
-	return physical.length + online.length + in_service.length + (errand?.steps.filter((step) => step.human).length ?? 0);
+export function handsOf({ physical, online, in_service, errand, corrections }: WayOffer): number {
+	return tasksOf({ corrections }).length + physical.length + online.length + in_service.length + (errand?.steps.filter((step) => step.human).length ?? 0);
 }
 
 /** The resources that move in it, each once. */

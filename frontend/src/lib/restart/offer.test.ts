@@ -3,7 +3,7 @@ import { offer, preview } from '#lib/testing/offer.ts';
 import { operation, view } from '#lib/testing/view.ts';
 import { en } from '#lib/text/en.ts';
 import { asksForHands, canBeTaken, goesOn, goesOnMeanwhile, mayBeWanted, onlySays } from './offer.ts';
-import { handsOf, kindWord, resourcesOf, stillAsked, storyOf, timesOf, timeWords } from './offer-words.ts';
+import { handsOf, kindWord, resourcesOf, stillAsked, storyOf, tasksOf, timesOf, timeWords, titleOf } from './offer-words.ts';
 
 const CHANGE = { name: 'b', now: 'placed', then: 'empty', so: { id: 'as-it-was', arguments: { text: 'b is empty' } }, by_hand: null };
 
@@ -80,4 +80,15 @@ test('what somebody says to be done is not among what the station then does', ()
 	expect(story([])).toBe('Then the station goes on: Tighten, Place.');
 	expect(story(['tighten'])).toBe('Then the station goes on: Place.');
 	expect(story(['tighten', 'place'])).toBe('Then the station goes on.');
+});
+
+test('a task that a person does before something is corrected is told as one, and not as done already', () => {
+	const how = { id: 'as-it-was', arguments: { text: 'Put in two bolts.' } };
+	const title = { title: 'Do it yourself: Place the bolts', title_message: { id: 'as-it-was', arguments: { text: 'Do it yourself: Place the bolts' } } };
+	const task = offer({ ...title, corrections: [{ ...CHANGE, by_hand: how }], only_if_checked: true, claims: ['place'] });
+	expect(tasksOf(task)).toEqual(['Put in two bolts.']);
+	expect(handsOf(task)).toBe(1);
+	expect(titleOf(task)).toBe('Do it yourself: Place the bolts');
+	const said = { ...task, corrections: [CHANGE] };
+	expect([tasksOf(said), handsOf(said), titleOf(said)]).toEqual([[], 0, 'Already so: b is empty']);
 });

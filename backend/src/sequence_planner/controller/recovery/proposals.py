@@ -110,6 +110,7 @@ class Offers:
             impossible=self._impossible(),
             fixed=frozenset(execution.conduct.forces) | execution.conduct.answers.keys(),
             waiting=_waiting_goals(execution),
+            answered=frozenset(execution.conduct.answers.keys() - execution.conduct.forces),
         )
         if self._asked is None or self._asked.of != (revision, request) or self._asked.answer.done():
             of = revision, request

@@ -173,6 +173,11 @@ export const restart = {
 		none: 'There is no way back from this state.',
 		noneFound: 'No way back was found in the time there is; that there is none is not proven.',
 		noneToDo: 'Nothing that devices or people could do from here is known to lead back.',
+		nothingElse: 'All ways were looked for.',
+		whyUnknown: (operations: readonly string[]): string =>
+			`Why was not found in the time there is.${operations.length === 0 ? '' : ` From here nothing leads to: ${operations.join(', ')}.`}`,
+		byHand: 'What the plan cannot do a person may do by hand. Do it at the station, then correct what the station believes.',
+		tasksMeaning: 'It is corrected, and so counts as done, as soon as you confirm that you have done it.',
 		ifChecked: 'Only if you have checked',
 		ifCheckedMeaning: 'Each of these says that something is not as the station believes, and nothing that it knows speaks for that. Take one only if you have seen that it is so.',
 		onlyIf: (claims: string): string => `Already so: ${claims}`,
@@ -282,6 +287,8 @@ export const restart = {
 
 	byHand: {
 		title: 'None of these fits',
+		/** Where there are none. */
+		others: 'Something else…',
 		about: 'You see the plan to what you ask for before anything starts.',
 		reset: 'Reset an operation',
 		resetMeaning: 'The station is brought to where the operation begins, and it begins again.',

@@ -171,6 +171,10 @@ export const restart: Text['restart'] = {
 		none: 'Det finns ingen väg tillbaka från detta tillstånd.',
 		noneFound: 'Ingen väg tillbaka hittades på den tid som finns; att ingen finns är inte bevisat.',
 		noneToDo: 'Inget som enheter eller människor kan göra härifrån är känt att leda tillbaka.',
+		nothingElse: 'Alla vägar söktes.',
+		whyUnknown: (operations) => `Varför hittades inte på den tid som finns.${operations.length === 0 ? '' : ` Härifrån leder inget till: ${operations.join(', ')}.`}`,
+		byHand: 'Det som planen inte kan göra kan en människa göra för hand. Gör det vid stationen och rätta sedan det som stationen tror.',
+		tasksMeaning: 'Det rättas, och räknas då som gjort, så snart du bekräftar att du har gjort det.',
 		ifChecked: 'Bara om du har kontrollerat',
 		ifCheckedMeaning: 'Var och en av dessa säger att något inte är som stationen tror, och inget den vet talar för det. Välj en bara om du har sett att det är så.',
 		onlyIf: (claims) => `Redan så: ${claims}`,
@@ -276,6 +280,7 @@ export const restart: Text['restart'] = {
 
 	byHand: {
 		title: 'Inget av detta passar',
+		others: 'Något annat…',
 		about: 'Du ser planen till det du ber om innan något startar.',
 		reset: 'Återställ en operation',
 		resetMeaning: 'Stationen förs till där operationen börjar, och den börjar om.',
