@@ -311,7 +311,7 @@ class Options:
             elif name in answered:
                 for value in self._others(state, name):
                     if (name, value) in self._tasks:
-                        yield Act(ActKind.TASK, name, ((name, value),), _ESTIMATED)
+                        yield Act(ActKind.TASK, name, ((name, value),), _EXPECTED)
 
     def _physical(self, here: RecoverySituation, fixed: frozenset[str]) -> Iterator[Act]:
         """For each value of a measured variable what effects would do with it too, and then that alone."""

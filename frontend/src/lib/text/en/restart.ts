@@ -58,6 +58,8 @@ export const restart = {
 		questions: (n: number): string => `${count(n, 'question', 'questions')} to answer.`,
 		outputs: (n: number): string => `${count(n, 'output', 'outputs')} to decide on.`,
 		confirm: 'Look whether it is still as before.',
+		/** Before what has changed without a command. */
+		afterHand: 'Look whether what the station believes is still true.',
 		said: (by: string, at: string, what: string): string => `${by} said at ${at}: ${what}.`,
 		ways: (n: number): string => `${count(n, 'way', 'ways')}, least effort first.`,
 		one: 'One way.',
@@ -107,6 +109,9 @@ export const restart = {
 		stop: 'Stop it',
 		stopMeaning: 'Running steps finish. Nothing more of it starts.',
 		done: (at: string): string => `Done at ${at}:`,
+		/** What it was for is so, before it is at its end. */
+		reached: (at: string): string => `It has brought about at ${at} what it was for:`,
+		stillMoves: (names: string, n: number): string => `${names} still ${n === 1 ? 'moves' : 'move'}: keep clear until it stands still`,
 		ended: (at: string): string => `Ended before it was done, at ${at}:`
 	},
 

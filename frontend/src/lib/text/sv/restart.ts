@@ -55,6 +55,7 @@ export const restart: Text['restart'] = {
 		moving: (names) => `Inte klara: ${names}.`,
 		questions: (n) => `${count(n, 'fråga', 'frågor')} att svara på.`,
 		outputs: (n) => `${count(n, 'utsignal', 'utsignaler')} att besluta om.`,
+		afterHand: 'Se efter om det som stationen tror fortfarande stämmer.',
 		confirm: 'Titta om det fortfarande är som förut.',
 		said: (by, at, what) => `${by} sade ${at}: ${what}.`,
 		ways: (n) => `${count(n, 'väg', 'vägar')}, minst besvär först.`,
@@ -104,6 +105,8 @@ export const restart: Text['restart'] = {
 		taken: (by, ago, why) => `${by} valde det för ${ago} sedan: ${why}`,
 		stop: 'Avbryt det',
 		stopMeaning: 'Det som pågår blir klart. Inget mer av det startas.',
+		reached: (at) => `Kl. ${at} var det nått som det var till för:`,
+		stillMoves: (names) => `${names} rör sig fortfarande: håll dig borta tills allt står stilla`,
 		done: (at) => `Klart ${at}:`,
 		ended: (at) => `Slutade innan det var klart, ${at}:`
 	},
