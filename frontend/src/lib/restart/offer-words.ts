@@ -3,7 +3,7 @@ import type { StationView, WayOffer } from '#lib/contract.ts';
 import { told } from '#lib/text/message.ts';
 import { say, type Text } from '#lib/text/text.svelte.ts';
 import { inSentence, nameOf, valueOf } from '#lib/wording/names.svelte.ts';
-import { asksForHands, canBeTaken, onlySays } from './offer.ts';
+import { asksForHands, canBeTaken, isSoAlready, onlySays } from './offer.ts';
 import { lengthOf } from './preview-lanes.ts';
 import { returning } from './returning.ts';
 import { operationTitles, resourceTitle } from './titles.ts';
@@ -81,6 +81,14 @@ export function resourcesOf({ errand }: Pick<WayOffer, 'errand'>): string[] {
 	return [...new Set(errand?.steps.filter((step) => !step.human).map((step) => step.resource))];
 }
 
+/** What a person makes sure of before it is carried out, with what moves first. */
+export function assured(view: Known, { errand }: Pick<WayOffer, 'errand'>, { take: texts }: Pick<Text['restart'], 'take'> = say().restart): string {
+	const steps = errand?.steps ?? [];
+	if (steps.length === 0) return texts.mayWait;
+	const first = steps.find((step) => step.moves && !step.human);
+	return first ? texts.nobodyIn(resourceTitle(view, first.resource), first.title, steps.length) : texts.haveRead(steps.length);
+}
+
 /** What happens, in a sentence or two. */
 export function storyOf(view: Known, offer: WayOffer): string {
 	const texts = say().restart.ways;
@@ -99,8 +107,10 @@ function isTitledByStarts({ kind, operation, errand }: WayOffer): boolean {
 	return operation === null && kind !== 'goal' && (errand?.steps.length ?? 0) > 0;
 }
 
-function startsOf(view: Known, { errand }: WayOffer): string {
+function startsOf(view: Known, offer: WayOffer): string {
 	const texts = say().restart.ways;
+	const { errand } = offer;
+	if (isSoAlready(offer)) return say().restart.plan.already;
 	const steps = (errand?.steps ?? []).map((step) => `${resourceTitle(view, step.resource)}: ${step.title}`);
 	return steps.length === 0 ? texts.waitsOnly : `${few(texts, steps)}.`;
 }

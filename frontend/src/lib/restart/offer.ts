@@ -31,6 +31,11 @@ export function isDoubted({ questions, variables }: Pick<StationView, 'questions
 	return questions.some(({ variable }) => variable === name) || (variables[name]?.belief?.unconfirmed_since ?? null) !== null;
 }
 
+/** Whether what it is to bring about is so as it is: nothing is started for it, and nothing waited for. */
+export function isSoAlready({ errand }: Pick<WayOffer, 'errand'>): boolean {
+	return errand !== null && errand.steps.length === 0 && errand.ticks === 0;
+}
+
 /** Whether nothing has to be done but to go on. */
 export function goesOn(offer: WayOffer): boolean {
 	return !asksForHands(offer) && !canBeTaken(offer);

@@ -258,6 +258,8 @@ export const restart = {
 		endsSafe: (time: string): string => `ends after ${time}, in a safe state`,
 		movesFirst: 'moves first',
 		nothing: 'Nothing is sent. The devices do it by themselves.',
+		/** Of what is to be brought about, and holds. */
+		already: 'It is so already. Nothing has to be started, and nothing waited for.',
 		until: 'until',
 		safe: 'the station is back in its safe states',
 		and: 'and',
@@ -278,6 +280,8 @@ export const restart = {
 		onlyCorrects: 'No start. Only what the station believes is changed.',
 		until: 'It ends when',
 		haveRead: (n: number): string => (n === 1 ? 'This start may be carried out.' : `All ${n} starts may be carried out.`),
+		nobodyIn: (device: string, what: string, n: number): string =>
+			`Nobody reaches in: ${device} moves first (${what}). ${n === 1 ? 'This start' : `All ${n} starts`} may be carried out.`,
 		mayWait: 'I will wait for it.',
 		haveSeen: (so: string): string => `I have looked: ${so}.`,
 		confirm: 'Confirm what is above.',
