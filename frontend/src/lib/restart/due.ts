@@ -20,6 +20,8 @@ const SAME_STATE = 10_000;
 const UNFINISHED = 30_000;
 /** How often more time is asked for where there was too little. */
 const PATIENCE = 3;
+/** After so many answers what there is is shown, and the search goes on beside that. */
+const ENOUGH = 2;
 
 /**
  * There was too little time, and what was found, if anything, says what nobody may have looked at: whoever looks may see
@@ -31,7 +33,7 @@ function wantsMore(answer: AdviceAnswer): boolean {
 
 /** Whether that is what there is to be said of a state, after as many answers as `times`. */
 export function isSettled(answer: AdviceAnswer, times: number): boolean {
-	return times >= PATIENCE || !wantsMore(answer);
+	return times >= ENOUGH || !wantsMore(answer);
 }
 
 /** Whether it is asked for again by itself soon: after as many answers as `times` not all ways were looked for. */

@@ -8,6 +8,7 @@ import { modeMeaning } from '#lib/wording/station.ts';
 import { clockText } from '#lib/wording/time.ts';
 import { sayActs } from './act-words.ts';
 import { openQuestions } from './answers.ts';
+import { waysOf } from './choice.ts';
 import { correctedText } from './happened.ts';
 import { actsTo } from './mode-acts.ts';
 import { STEPS, type Next, type Step } from './next.ts';
@@ -106,7 +107,9 @@ function ways(view: StationView, advice: AdviceAnswer | null, now: number): stri
 	if (found?.[0] && goesOn(found[0])) return last?.done && now - last.ended < LATELY ? texts.taken(told(last.title_message, last.title), clockText(last.ended, now)) : texts.nothing;
 	if (!isTrue(view)) return texts.afterwards;
 	if (found === null) return say().restart.ways.looking;
-	return found.length === 0 ? texts.none : found.length === 1 ? texts.one : texts.ways(found.length);
+	const { offered, checked } = waysOf(advice, view);
+	if (offered.length === 0) return checked.length === 0 ? texts.none : texts.checked(checked.length);
+	return offered.length === 1 ? texts.one : texts.ways(offered.length);
 }
 
 function on(view: StationView): string {

@@ -64,6 +64,7 @@ export const restart = {
 		ways: (n: number): string => `${count(n, 'way', 'ways')}, least effort first.`,
 		one: 'One way.',
 		none: 'No way is known yet.',
+		checked: (n: number): string => `${count(n, 'way', 'ways')}, only if you have checked.`,
 		nothing: 'Nothing has to be carried out.',
 		afterwards: 'The ways follow from it.',
 		taken: (title: string, at: string): string => `${title}, done at ${at}.`,

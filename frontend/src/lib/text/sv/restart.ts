@@ -60,6 +60,7 @@ export const restart: Text['restart'] = {
 		said: (by, at, what) => `${by} sade ${at}: ${what}.`,
 		ways: (n) => `${count(n, 'väg', 'vägar')}, minst besvär först.`,
 		one: 'En väg.',
+		checked: (n) => `${count(n, 'väg', 'vägar')}, bara om du har kontrollerat.`,
 		none: 'Ingen väg är känd ännu.',
 		nothing: 'Inget behöver utföras.',
 		afterwards: 'Vägarna följer av det.',
