@@ -297,9 +297,9 @@ def violated_goals(execution: Executor) -> Goals:
 
 
 def _meaning(offer: RecoveryProposal) -> object:
-    """Return what an offer asks for, whatever plan it was found with."""
+    """Return what an offer asks for; after acts of people it is one, whatever plan it was found with."""
     acts = offer.corrections, offer.physical, offer.online, offer.in_service
-    return offer.kind, offer.operation, offer.goal, acts
+    return offer.kind, offer.operation, acts, None if any(acts) else offer.goal
 
 
 def _no_plan(execution: Executor, aimed: GoalPlan, out_of_service: Collection[str]) -> CommandRefused:
