@@ -9,7 +9,7 @@ from functools import partial
 
 import pytest
 
-from sequence_planner.automaton.automaton import Operation
+from sequence_planner.automaton.automaton import HumanTask, Operation
 from sequence_planner.controller.commands.command import CommandRefused, GivenValue
 from sequence_planner.controller.commands.queries import AskAdvice, AskGoal, AskReset
 from sequence_planner.controller.commands.recovery import ExecuteOperatorPlan
@@ -29,6 +29,7 @@ from sequence_planner.language.types import BOOLEAN, EnumerationType, Value
 from sequence_planner.planning.recovery.proposals import Advice, ProposalEffort
 from sequence_planner.planning.recovery.request import AdviceRequest
 from sequence_planner.synthesis.supervisor import synthesise
+from sequence_planner.texts.message import Title
 from support.automata import Does, automaton, predicate_of
 from support.people import EVA
 
@@ -258,6 +259,94 @@ def test_where_there_was_time_for_corrections_alone_asking_again_finds_more(monk
             advice = await there.offers.advice(AskAdvice())
             assert any(offer.errand is not None and not offer.corrections for offer in advice.offers)
             assert await there.offers.advice(AskAdvice()) is advice
+
+    asyncio.run(scenario())
+
+
+def test_an_incomplete_answer_is_never_the_last_word_and_loses_nothing_that_was_found(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    async def scenario() -> None:
+        async with desk() as there:
+            at_leisure, asked = there.advisor.answer, 0
+
+            async def answer(request: AdviceRequest, deadline: float) -> Advice:
+                nonlocal asked
+                advice = await at_leisure(request, deadline)
+                asked += 1
+                if asked > 2:
+                    return advice
+                # First what is done alone, which used to be the last word, then what is said alone.
+                said = asked == 2
+                part = tuple(each for each in advice.offers if bool(each.corrections) == said)
+                return replace(advice, offers=part, complete=False)
+
+            monkeypatch.setattr(there.advisor, "answer", answer)
+            monkeypatch.setattr(proposals, "WAITING", 60.0)  # the advisor is only being started
+            there.execution.start_production()
+            there.correct(loaded=True)
+            there.tick()
+            there.believe(jammed=True)
+            there.tick()
+            first = await there.offers.advice(AskAdvice())
+            assert first.offers
+            assert not any(offer.corrections for offer in first.offers)
+            assert not first.complete
+            second = await there.offers.advice(AskAdvice())
+            found = [offer.title for offer in second.offers]
+            assert {offer.title for offer in first.offers} < set(found)
+            assert second.offers[-1].corrections
+            assert not second.complete
+            third = await there.offers.advice(AskAdvice())
+            assert third.complete
+            assert await there.offers.advice(AskAdvice()) is third
+            assert asked == 3
+
+            # What was found in one mode is so in another, and is not looked for once more.
+            there.enter(Mode.RESTART)
+            entered = await there.offers.advice(AskAdvice())
+            assert [offer.title for offer in entered.offers] == [offer.title for offer in third.offers]
+            assert entered.revision == there.execution.revision > third.revision
+            assert asked == 3
+            there.take(next(offer for offer in entered.offers if not offer.corrections))
+
+    asyncio.run(scenario())
+
+
+def test_what_a_person_has_said_is_missing_a_person_may_put_in_by_hand_and_then_say_so(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(proposals, "WAITING", 60.0)  # the advisor is only being started
+
+    async def scenario() -> None:
+        execution = made(precondition="true")
+        abilities = dict(execution.automaton.abilities)
+        task = HumanTask(Title("Put it on the cart.", {"en": "Put it on the cart."}), "at")
+        # The task is never asked for: only a person who acts without having been asked can do it.
+        never = predicate_of(execution.automaton, "jammed and not jammed")
+        done = replace(abilities["load"], finish_guard=never, finish_actions=abilities["load"].start_actions)
+        abilities["load"] = replace(done, human=task, enabled=never, start_actions=())
+        station = replace(execution.automaton, abilities=abilities)
+        execution = Executor(station, synthesise(station))
+        advisor = AdvisorClient(execution.automaton, execution.supervisor)
+        try:
+            there = Desk(advisor, execution)
+            execution.start_production()
+            there.tick()
+            there.correct(loaded=True)
+            there.correct(loaded=False)
+            there.enter(Mode.RESTART)
+            there.tick()
+            advice = await there.offers.advice(AskAdvice())
+            told = [*advice.offers, *advice.if_checked]
+            (offer,) = (each for each in told if [change.name for change in each.corrections] == ["loaded"])
+            assert offer.title == "Do it yourself: load"
+            assert [str(change.by_hand) for change in offer.corrections] == ["Put it on the cart."]
+            assert offer.obstacle is None
+            there.take(offer)
+            assert execution.state["loaded"] is True
+        finally:
+            advisor.close()
 
     asyncio.run(scenario())
 

@@ -3,13 +3,28 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from graphlib import CycleError, TopologicalSorter
 
-from sequence_planner.automaton.automaton import Ability, Automaton, Effect, Flag, reads, target
+from sequence_planner.automaton.automaton import Ability, Automaton, Effect, Flag, Kind, reads, target
 from sequence_planner.automaton.transitions import Phase, Transition, transitions
 from sequence_planner.language.syntax import Assignment, Constant, Expression, Variable, variables
 from sequence_planner.language.types import Value
+
+# What people do themselves, and what is noted of it then.
+
+
+def tasks_for(automaton: Automaton) -> Mapping[tuple[str, Value], Ability]:
+    """Return for each value that an estimate gets once a person has done a task the ability that has them do it."""
+    found: dict[tuple[str, Value], Ability] = {}
+    for ability in automaton.abilities.values():
+        if ability.human is not None and not ability.restart:
+            for action in ability.finish_actions:
+                name = target(action)
+                if automaton.variables[name].kind is Kind.ESTIMATED and isinstance(action.value, Constant):
+                    found.setdefault((name, action.value.value), ability)
+    return found
+
 
 # The variables that matter to a question: those its predicates read, and all that decides how these are written.
 

@@ -265,6 +265,8 @@ STATION: Final[dict[str, str]] = {
     "offer.do-so": "{acts}, so that {records}",
     "offer.do-so-first": "{acts^}, so that {records}",
     "offer.so": "{condition}",
+    "offer.task": "do it yourself: {tasks}",
+    "offer.task-first": "Do it yourself: {tasks}",
     "offer.by-hand": "{how}",
     "offer.is": "{name} is {value}",
     "offer.correct": "correct {changes}",

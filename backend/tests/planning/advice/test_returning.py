@@ -128,3 +128,45 @@ def test_what_is_wrong_is_repaired_before_somebody_takes_over() -> None:
     first, *others = advisor.advise(AdviceRequest(synchronise(station, held), goals, given_up, deadline=10)).offers
     assert [(change.name, change.new) for change in first.physical] == [("end_effector.rsp_is_locked", False)]
     assert any(change.name == "operator.takes_over" for each in others for change in each.physical)
+
+
+def test_bolts_that_a_person_has_said_are_missing_are_put_in_by_hand_also_where_the_robot_stands_at_them() -> None:
+    """The kit has gone: nothing that devices do brings them back."""
+    station = prepare_station(TRUCK_ENGINE_STATION).automaton
+    supervisor = synthesise(station)
+    pair = "AtBoltPair6TCPPose"
+    bolts = [name for name in station.names(Kind.ESTIMATED) if name.startswith("bolts[")]
+    state: dict[str, Value | None] = {
+        **initial_state(station),
+        **dict.fromkeys(bolts, "tightened"),
+        f"bolts[{pair}]": "empty",
+        "ladder_frame": "on_engine",
+        "agv.act_pos": "kitting",
+        "agv.ref_pos": "kitting",
+        "end_effector.tool": "ATLASTOOL",
+        "end_effector.gripper_is_closed": True,
+        "end_effector.rsp_is_locked": True,
+        "engine.engine_in_place": True,
+        "engine.tag_is_read": True,
+        "nutrunner.positioned_at_home_station": False,
+        "nutrunner.activate_lift": False,
+        "nutrunner.lift_state": "floats",
+        "robot.pose": pair,
+        "robot.previous_pose": pair,
+        "robot.target_pose": pair,
+        "scene.attached": "ATLASTOOL",
+        "scene.wanted": "ATLASTOOL",
+    }
+    said = frozenset({f"bolts[{pair}]"})
+    goals = goals_of(station, [f"place_bolt_pair({pair})", f"tighten_bolt_pair({pair})"])
+    request = AdviceRequest(synchronise(station, state), goals, fixed=said, deadline=10)
+    advisor = Advisor(station, supervisor)
+    for offer in advisor.advise(request).offers:
+        assert said.isdisjoint(change.name for change in offer.corrections), "it says otherwise than the person"
+    by_hand = [offer for offer in advisor.advise(replace(request, answered=said)).offers if offer.by_hand]
+    assert by_hand
+    placed = [offer for offer in by_hand if [change.new for change in offer.corrections] == ["placed"]]
+    assert [offer.operator_plan is not None for offer in placed] == [True], "the robot is taken away from them besides"
+    for offer in by_hand:
+        assert offer.only_if_checked
+        carried_out(Stopped(station, supervisor, request.state, goals, Circumstances()), offer)

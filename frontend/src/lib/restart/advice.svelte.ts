@@ -2,7 +2,7 @@
 import type { AdviceAnswer } from '#lib/contract.ts';
 import type { Refusal } from '#lib/rest/refusal.ts';
 import { request } from '#lib/rest/request.ts';
-import { isDue, isSettled } from './due.ts';
+import { goesOnLooking, isDue, isSettled } from './due.ts';
 import { merged } from './merge.ts';
 
 /** Milliseconds in which the server answers, also where it has given itself more time. */
@@ -28,6 +28,11 @@ export class Advice {
 	/** The last answer, unless there was too little time for it and it is asked for again. */
 	get settled(): AdviceAnswer | null {
 		return this.answer && isSettled(this.answer, this.#times) ? this.answer : null;
+	}
+
+	/** Not all ways were looked for yet, and the search goes on by itself. */
+	get unfinished(): boolean {
+		return this.answer !== null && (this.pending ? !this.answer.complete : goesOnLooking(this.answer, this.#times));
 	}
 
 	/** A person chooses a way; null: nobody has. */

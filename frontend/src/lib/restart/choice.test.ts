@@ -1,15 +1,18 @@
 import { expect, test } from 'vitest';
-import type { AdviceAnswer, WayOffer } from '#lib/contract.ts';
+import type { AdviceAnswer, Question, WayOffer } from '#lib/contract.ts';
 import { offer, preview } from '#lib/testing/offer.ts';
-import { choiceOf, waysOf, type Choice } from './choice.ts';
+import { estimate } from '#lib/testing/view.ts';
+import { choiceOf, waysOf, type Choice, type Way } from './choice.ts';
 
 const MOVE = offer({ id: 'life-1', kind: 'restart', title: 'Move to the pose above the engine', errand: preview('move') });
 const RUN = offer({ id: 'life-2', kind: 'restart', title: 'Run the nutrunner', errand: preview('run') });
 const SAYS = offer({ id: 'life-3', corrections: [{ name: 'b', now: 'placed', then: 'empty', so: { id: 'as-it-was', arguments: { text: 'b is empty' } }, by_hand: null }] });
 
-function ways(...offers: WayOffer[]): ReturnType<typeof waysOf> {
-	const answer: AdviceAnswer = { revision: 7, offers, if_checked: [], reasons: null, complete: true, seconds: 0 };
-	return waysOf(answer);
+const DOUBT: Question = { variable: 'b', believed: 'placed', so: { id: 'as-it-was', arguments: { text: 'b is placed' } }, possible: ['empty'], because: [], because_messages: [] };
+const answerOf = (...offers: WayOffer[]): AdviceAnswer => ({ revision: 7, offers, if_checked: [], reasons: null, complete: true, seconds: 0 });
+
+function ways(...offers: WayOffer[]): readonly Way[] {
+	return waysOf(answerOf(...offers), { questions: [DOUBT], variables: {} }).offered;
 }
 
 const picked = (wanted: WayOffer, ...offers: WayOffer[]): string | null => ways(...offers).find(([, each]) => each === wanted)?.[0] ?? null;
@@ -38,4 +41,13 @@ test('where it is gone that is said, and no other is chosen', () => {
 test('ways of one meaning are told apart', () => {
 	const keys = ways(MOVE, { ...MOVE, id: 'life-4' }, RUN).map(([key]) => key);
 	expect(new Set(keys).size).toBe(3);
+});
+
+test('what nothing speaks against is corrected by those alone who have checked, also where it claims no work', () => {
+	const belief = { writer: 'operator.place', at: 900, evidence: [], unconfirmed_since: null };
+	const found = waysOf({ ...answerOf(SAYS, MOVE), if_checked: [offer({ id: 'life-4', title: 'said' })] }, { questions: [], variables: { b: estimate({ belief }) } });
+	expect(found.offered.map(([, { id }]) => id)).toEqual([MOVE.id]);
+	expect(found.checked.map(([, { id }]) => id)).toEqual([SAYS.id, 'life-4']);
+	const doubted = { b: estimate({ belief: { ...belief, unconfirmed_since: 950 } }) };
+	expect(waysOf(answerOf(SAYS), { questions: [], variables: doubted }).offered).toHaveLength(1);
 });

@@ -1,6 +1,6 @@
 /** Which of the ways is the chosen one, also after they were looked for again. */
-import type { AdviceAnswer, WayOffer } from '#lib/contract.ts';
-import { mayBeWanted, meaningOf } from './offer.ts';
+import type { AdviceAnswer, StationView, WayOffer } from '#lib/contract.ts';
+import { isDoubted, mayBeWanted, meaningOf } from './offer.ts';
 
 /** A way with what tells it from the others. */
 export type Way = readonly [key: string, offer: WayOffer];
@@ -11,9 +11,20 @@ export interface Choice {
 	readonly lost: boolean;
 }
 
-/** All ways of an answer, those last that hold only if somebody has checked. */
-export function waysOf(answer: AdviceAnswer | null): Way[] {
-	return [...keyed('', answer?.offers ?? []), ...keyed('checked ', answer?.if_checked ?? [])];
+/** The ways of an answer, least effort first. */
+export interface Ways {
+	readonly offered: readonly Way[];
+	/** What is for those alone who have checked: it says what nobody did, or changes what nothing speaks against. */
+	readonly checked: readonly Way[];
+}
+
+export function waysOf(answer: AdviceAnswer | null, view: Pick<StationView, 'questions' | 'variables'>): Ways {
+	const offers = keyed('', answer?.offers ?? []);
+	const isOffered = ([, { corrections }]: Way): boolean => corrections.every(({ name }) => isDoubted(view, name));
+	return {
+		offered: offers.filter(isOffered),
+		checked: [...offers.filter((way) => !isOffered(way)), ...keyed('checked ', answer?.if_checked ?? [])]
+	};
 }
 
 /** By its meaning; by its rank only among those that mean the same. */

@@ -2,7 +2,7 @@ import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
 import type { AdviceAnswer } from '#lib/contract.ts';
 import { offer } from '#lib/testing/offer.ts';
-import { isDue, isSettled, type Asked } from './due.ts';
+import { goesOnLooking, isDue, isSettled, type Asked } from './due.ts';
 
 const answer: AdviceAnswer = { revision: 7, offers: [offer()], if_checked: [], reasons: null, complete: true, seconds: 0.1 };
 const asked = (over: Partial<Asked> = {}): Asked => ({ answer, refused: false, times: 1, since: 3000, ...over });
@@ -23,7 +23,16 @@ describe('ways back are asked for', () => {
 	test('a few times more where the time was too short', () => {
 		const short = { ...answer, offers: [], complete: false };
 		expect(isDue(asked({ answer: short, times: 1 }), 7)).toBe(true);
-		expect(isDue(asked({ answer: short, times: 3, since: 60_000 }), 7)).toBe(false);
+		expect(isDue(asked({ answer: short, times: 3, since: 11_000 }), 7)).toBe(false);
+		expect(isDue(asked({ answer: short, times: 3, since: 31_000 }), 7)).toBe(true);
+	});
+
+	test('so too where something to do was found in it: what is best may be missing yet', () => {
+		const short = { ...answer, complete: false };
+		expect([isDue(asked({ answer: short, times: 1 }), 7), goesOnLooking(short, 1)]).toEqual([true, true]);
+		expect([isDue(asked({ answer: short, times: 3 }), 7), goesOnLooking(short, 3)]).toEqual([false, false]);
+		expect(isSettled(short, 1)).toBe(true); // meanwhile it can be taken
+		expect(goesOnLooking(answer, 1)).toBe(false);
 	});
 
 	test('so too where only corrections were found in it, and now and then after that', () => {
@@ -31,9 +40,9 @@ describe('ways back are asked for', () => {
 		const short = { ...guesses, complete: false };
 		expect(isDue(asked({ answer: short, times: 1 }), 7)).toBe(true);
 		expect(isDue(asked({ answer: short, times: 3 }), 7)).toBe(false);
-		expect(isDue(asked({ answer: short, times: 3, since: 11_000 }), 7)).toBe(true);
+		expect(isDue(asked({ answer: short, times: 3, since: 31_000 }), 7)).toBe(true);
 		expect(isDue(asked({ answer: guesses, times: 1 }), 7)).toBe(false);
-		expect([isSettled(short, 1), isSettled(short, 3), isSettled(guesses, 1)]).toEqual([false, true, true]);
+		expect([isSettled(short, 1), isSettled(short, 2), isSettled(guesses, 1)]).toEqual([false, true, true]);
 	});
 
 	test('never sooner than 2 s after the last answer', () => {

@@ -3,7 +3,7 @@ import type { StationView, WayOffer } from '#lib/contract.ts';
 import { told } from '#lib/text/message.ts';
 import { say, type Text } from '#lib/text/text.svelte.ts';
 import { inSentence, nameOf, valueOf } from '#lib/wording/names.svelte.ts';
-import { asksForHands, canBeTaken, onlySays } from './offer.ts';
+import { asksForHands, canBeTaken, isSoAlready, onlySays } from './offer.ts';
 import { lengthOf } from './preview-lanes.ts';
 import { returning } from './returning.ts';
 import { operationTitles, resourceTitle } from './titles.ts';
@@ -39,12 +39,17 @@ export function timesOf({ effort, errand, then }: WayOffer): { readonly own: num
 
 /** What it is called; where it only says what is true, with the warning that somebody has to have looked. */
 export function titleOf(offer: WayOffer): string {
-	return offer.only_if_checked && onlySays(offer) ? say().restart.ways.onlyIf(saidOf(offer)) : told(offer.title_message, offer.title);
+	return offer.only_if_checked && onlySays(offer) && tasksOf(offer).length === 0 ? say().restart.ways.onlyIf(saidOf(offer)) : told(offer.title_message, offer.title);
 }
 
 /** That a variable has the value it would get: `pair 4 is placed`. */
 export function soOf({ so, name, then }: WayOffer['corrections'][number]): string {
 	return told(so, say().restart.ways.is(inSentence(nameOf(name, null)), valueOf(name, then)));
+}
+
+/** What a person does before it is true: a task, with the instruction for it. */
+export function tasksOf({ corrections }: Pick<WayOffer, 'corrections'>): string[] {
+	return corrections.flatMap(({ by_hand: how }) => (how === null ? [] : [told(how, '')]));
 }
 
 /** What it says of the product. */
@@ -67,13 +72,21 @@ export function stillAsked(view: StationView, { online, in_service, physical }: 
 }
 
 /** So much a person does by hand, before it or within it. */
-export function handsOf({ physical, online, in_service, errand }: WayOffer): number {
-	return physical.length + online.length + in_service.length + (errand?.steps.filter((step) => step.human).length ?? 0);
+export function handsOf({ physical, online, in_service, errand, corrections }: WayOffer): number {
+	return tasksOf({ corrections }).length + physical.length + online.length + in_service.length + (errand?.steps.filter((step) => step.human).length ?? 0);
 }
 
 /** The resources that move in it, each once. */
 export function resourcesOf({ errand }: Pick<WayOffer, 'errand'>): string[] {
 	return [...new Set(errand?.steps.filter((step) => !step.human).map((step) => step.resource))];
+}
+
+/** What a person makes sure of before it is carried out, with what moves first. */
+export function assured(view: Known, { errand }: Pick<WayOffer, 'errand'>, { take: texts }: Pick<Text['restart'], 'take'> = say().restart): string {
+	const steps = errand?.steps ?? [];
+	if (steps.length === 0) return texts.mayWait;
+	const first = steps.find((step) => step.moves && !step.human);
+	return first ? texts.nobodyIn(resourceTitle(view, first.resource), first.title, steps.length) : texts.haveRead(steps.length);
 }
 
 /** What happens, in a sentence or two. */
@@ -94,8 +107,10 @@ function isTitledByStarts({ kind, operation, errand }: WayOffer): boolean {
 	return operation === null && kind !== 'goal' && (errand?.steps.length ?? 0) > 0;
 }
 
-function startsOf(view: Known, { errand }: WayOffer): string {
+function startsOf(view: Known, offer: WayOffer): string {
 	const texts = say().restart.ways;
+	const { errand } = offer;
+	if (isSoAlready(offer)) return say().restart.plan.already;
 	const steps = (errand?.steps ?? []).map((step) => `${resourceTitle(view, step.resource)}: ${step.title}`);
 	return steps.length === 0 ? texts.waitsOnly : `${few(texts, steps)}.`;
 }

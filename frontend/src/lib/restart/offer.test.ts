@@ -2,8 +2,8 @@ import { expect, test } from 'vitest';
 import { offer, preview } from '#lib/testing/offer.ts';
 import { operation, view } from '#lib/testing/view.ts';
 import { en } from '#lib/text/en.ts';
-import { asksForHands, canBeTaken, goesOn, goesOnMeanwhile, mayBeWanted, onlySays } from './offer.ts';
-import { handsOf, kindWord, resourcesOf, stillAsked, storyOf, timesOf, timeWords } from './offer-words.ts';
+import { asksForHands, canBeTaken, goesOn, goesOnMeanwhile, isSoAlready, mayBeWanted, onlySays } from './offer.ts';
+import { assured, handsOf, kindWord, resourcesOf, stillAsked, storyOf, tasksOf, timesOf, timeWords, titleOf } from './offer-words.ts';
 
 const CHANGE = { name: 'b', now: 'placed', then: 'empty', so: { id: 'as-it-was', arguments: { text: 'b is empty' } }, by_hand: null };
 
@@ -80,4 +80,34 @@ test('what somebody says to be done is not among what the station then does', ()
 	expect(story([])).toBe('Then the station goes on: Tighten, Place.');
 	expect(story(['tighten'])).toBe('Then the station goes on: Place.');
 	expect(story(['tighten', 'place'])).toBe('Then the station goes on.');
+});
+
+test('a task that a person does before something is corrected is told as one, and not as done already', () => {
+	const how = { id: 'as-it-was', arguments: { text: 'Put in two bolts.' } };
+	const title = { title: 'Do it yourself: Place the bolts', title_message: { id: 'as-it-was', arguments: { text: 'Do it yourself: Place the bolts' } } };
+	const task = offer({ ...title, corrections: [{ ...CHANGE, by_hand: how }], only_if_checked: true, claims: ['place'] });
+	expect(tasksOf(task)).toEqual(['Put in two bolts.']);
+	expect(handsOf(task)).toBe(1);
+	expect(titleOf(task)).toBe('Do it yourself: Place the bolts');
+	const said = { ...task, corrections: [CHANGE] };
+	expect([tasksOf(said), handsOf(said), titleOf(said)]).toEqual([[], 0, 'Already so: b is empty']);
+});
+
+test('before something moves a person makes sure that nobody reaches in, and hears what moves first', () => {
+	const { steps, ...rest } = preview('place', 'move');
+	const errand = { ...rest, steps: steps.map((step) => ({ ...step, human: step.ability === 'place' })) };
+	const known = view({ resources: {} });
+	expect(assured(known, offer({ errand }))).toBe('Nobody reaches in: robot moves first (move). All 2 starts may be carried out.');
+	expect(assured(known, offer({ errand: preview('move') }))).toBe('Nobody reaches in: robot moves first (move). This start may be carried out.');
+	const quiet = preview('lamp');
+	expect(assured(known, offer({ errand: { ...quiet, steps: quiet.steps.map((step) => ({ ...step, moves: false })) } }))).toBe('This start may be carried out.');
+	expect(assured(known, offer({ errand: { ...preview(), ticks: 3 } }))).toBe('I will wait for it.');
+});
+
+test('what is so already is neither started nor waited for', () => {
+	const reset = offer({ kind: 'reset', operation: 'tighten', errand: preview() });
+	expect(isSoAlready(reset)).toBe(true);
+	expect(storyOf(view({}), reset)).toContain('It is so already');
+	expect(isSoAlready(offer({ errand: { ...preview(), ticks: 3 } }))).toBe(false);
+	expect(isSoAlready(offer())).toBe(false);
 });

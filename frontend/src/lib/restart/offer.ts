@@ -26,6 +26,16 @@ export function mayBeWanted(offer: WayOffer): boolean {
 	return offer.corrections.length === 0 && !offer.only_if_checked;
 }
 
+/** Whether something speaks against what is believed: it does not fit what is measured, or nobody has seen since that it is still so. */
+export function isDoubted({ questions, variables }: Pick<StationView, 'questions' | 'variables'>, name: string): boolean {
+	return questions.some(({ variable }) => variable === name) || (variables[name]?.belief?.unconfirmed_since ?? null) !== null;
+}
+
+/** Whether what it is to bring about is so as it is: nothing is started for it, and nothing waited for. */
+export function isSoAlready({ errand }: Pick<WayOffer, 'errand'>): boolean {
+	return errand !== null && errand.steps.length === 0 && errand.ticks === 0;
+}
+
 /** Whether nothing has to be done but to go on. */
 export function goesOn(offer: WayOffer): boolean {
 	return !asksForHands(offer) && !canBeTaken(offer);

@@ -38,6 +38,11 @@ export function lastingAlarms({ alarms }: Pick<StationView, 'alarms'>): Keyed[] 
 	return byUrgency(alarms).filter(([, alarm]) => alarm.ended === null && alarm.priority !== 'low');
 }
 
+/** The alarms of what has changed without a command, as where somebody moved it: what is believed may be true no more. */
+export function movedByHand({ alarms }: Pick<StationView, 'alarms'>): Keyed[] {
+	return byUrgency(alarms).filter(([, { kind, ended }]) => kind === 'by-hand' && ended === null);
+}
+
 /** All reasons for which a person is wanted; none while the station works by itself. */
 export function wantedFor(view: StationView): Wanted[] {
 	const way = view.way_back;

@@ -27,3 +27,15 @@ test('of a device that is not heard nobody says that it stands still', () => {
 	expect(seen(['Robot UR10'])).toContain('Nobody knows whether Robot UR10 moves.');
 	expect(seen(['Robot UR10'])).not.toContain('stand still');
 });
+
+test('what was moved by hand is named where it happened, and the state is not taken for true while it is told', () => {
+	const moved = alarm({ kind: 'by-hand', priority: 'low', text: 'The tool dock has changed without a command. The tool is away.', messages: undefined });
+	const held = view({ mode: 'hold', alarms: { 'by-hand:dock': moved } });
+	const said = stepWords({ view: held, next: 'continue', step: 'on', advice: null, now: 0 });
+	expect(said.understand).toContain('The tool dock has changed without a command.');
+	expect(said.understand).toContain('All devices stand still.');
+	expect(said.state).toBe('Look whether what the station believes is still true. The tool dock has changed without a command.');
+	expect(doneSteps(held, 'on')).toEqual({ understand: true, state: false, ways: true, on: false });
+	const over = view({ mode: 'hold', alarms: { 'by-hand:dock': { ...moved, ended: 990 } } });
+	expect(doneSteps(over, 'on').state).toBe(true);
+});

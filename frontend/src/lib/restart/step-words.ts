@@ -8,11 +8,12 @@ import { modeMeaning } from '#lib/wording/station.ts';
 import { clockText } from '#lib/wording/time.ts';
 import { sayActs } from './act-words.ts';
 import { openQuestions } from './answers.ts';
+import { waysOf } from './choice.ts';
 import { correctedText } from './happened.ts';
 import { actsTo } from './mode-acts.ts';
 import { STEPS, type Next, type Step } from './next.ts';
 import { goesOn } from './offer.ts';
-import { isUnsure, lastingAlarms } from './shown.ts';
+import { isUnsure, lastingAlarms, movedByHand } from './shown.ts';
 import { resourceTitle } from './titles.ts';
 
 /** Those that lie behind, or in which nothing is to be done; what happened is understood as soon as something else comes next. */
@@ -20,7 +21,7 @@ export function doneSteps(view: StationView, step: Step | null): Record<Step, bo
 	const at = step === null ? STEPS.length : STEPS.indexOf(step);
 	return {
 		understand: at > 0,
-		state: at > 0 && isTrue(view),
+		state: at > 0 && isTrue(view) && movedByHand(view).length === 0,
 		ways: at > STEPS.indexOf('ways'),
 		on: at > STEPS.indexOf('on')
 	};
@@ -58,9 +59,17 @@ function happened(view: StationView): string {
 	const [first] = lastingAlarms(view);
 	const moving = Object.values(view.abilities).filter(runs).map(({ resource }) => resourceTitle(view, resource));
 	const said = [first ? ended(firstOf(wordsOf(first[1]).text)) : modeMeaning(view)];
+	const moved = movedText(view);
+	if (moved !== null) said.push(moved);
 	if (moving.length > 0) said.push(texts.moving([...new Set(moving)].join(', ')));
 	if (view.silent.length > 0) said.push(texts.unheard(listed(view.silent), view.silent.length));
-	return said.length > 1 ? said.join(' ') : `${said.join('')} ${texts.still}`;
+	return moving.length + view.silent.length > 0 ? said.join(' ') : `${said.join(' ')} ${texts.still}`;
+}
+
+/** What was moved by hand, as its alarms say; null where nothing was. */
+function movedText(view: StationView): string | null {
+	const moved = movedByHand(view);
+	return moved.length === 0 ? null : moved.map(([, alarm]) => ended(firstOf(wordsOf(alarm).text))).join(' ');
 }
 
 /** The first sentence of several. */
@@ -75,6 +84,8 @@ function state(view: StationView, now: number): string {
 	if (outputs > 0) return texts.outputs(outputs);
 	if (questions > 0) return texts.questions(questions);
 	if (view.unconfirmed) return texts.confirm;
+	const moved = movedText(view);
+	if (moved !== null) return `${texts.afterHand} ${moved}`;
 	const said = view.last_correction;
 	return said?.undoable ? texts.said(said.by, clockText(said.at, now), correctedText(view, said)) : agreeText(view);
 }
@@ -96,7 +107,9 @@ function ways(view: StationView, advice: AdviceAnswer | null, now: number): stri
 	if (found?.[0] && goesOn(found[0])) return last?.done && now - last.ended < LATELY ? texts.taken(told(last.title_message, last.title), clockText(last.ended, now)) : texts.nothing;
 	if (!isTrue(view)) return texts.afterwards;
 	if (found === null) return say().restart.ways.looking;
-	return found.length === 0 ? texts.none : found.length === 1 ? texts.one : texts.ways(found.length);
+	const { offered, checked } = waysOf(advice, view);
+	if (offered.length === 0) return checked.length === 0 ? texts.none : texts.checked(checked.length);
+	return offered.length === 1 ? texts.one : texts.ways(offered.length);
 }
 
 function on(view: StationView): string {

@@ -38,11 +38,11 @@ from sequence_planner.language.syntax import Expression
 from sequence_planner.planning.goals.pursuit import Goals
 from sequence_planner.planning.problem import goals_of
 from sequence_planner.planning.recovery.manual_plans import stalled_effects
-from sequence_planner.planning.recovery.proposals import OfferKind, RecoveryProposal
+from sequence_planner.planning.recovery.proposals import Advice, OfferKind, RecoveryProposal
 from sequence_planner.planning.recovery.request import AdviceRequest, GoalPlanRequest, Pairing
 from sequence_planner.texts.message import joined, message
 
-LONGER = 5.0  # seconds for advice where in less nothing was found but what a person would have to know
+LONGER = 5.0  # seconds for advice where less was too little
 MOST_KEPT = 64  # offers; older ones are gone
 
 
@@ -56,6 +56,15 @@ class _Kept:
 class _Asked:
     of: tuple[int, AdviceRequest]
     answer: asyncio.Future[AdviceView]
+
+
+@dataclass(frozen=True)
+class _Advised:
+    """All that has been found for a request so far, and how it was shown last."""
+
+    request: AdviceRequest
+    advice: Advice
+    view: AdviceView
 
 
 class Offers:
@@ -83,7 +92,7 @@ class Offers:
         self._life = secrets.token_hex(3)  # no offer is taken for one of an earlier life of the controller
         self._numbers = itertools.count(1)
         self._asked: _Asked | None = None
-        self._advised: tuple[int, AdviceRequest, AdviceView] | None = None
+        self._advised: _Advised | None = None
 
     @answers(AskAdvice)
     async def advice(self, query: AskAdvice) -> AdviceView:
@@ -101,6 +110,7 @@ class Offers:
             impossible=self._impossible(),
             fixed=frozenset(execution.conduct.forces) | execution.conduct.answers.keys(),
             waiting=_waiting_goals(execution),
+            answered=frozenset(execution.conduct.answers.keys() - execution.conduct.forces),
         )
         if self._asked is None or self._asked.of != (revision, request) or self._asked.answer.done():
             of = revision, request
@@ -109,29 +119,54 @@ class Offers:
         return await asyncio.shield(self._asked.answer)
 
     async def _found(self, revision: int, request: AdviceRequest) -> AdviceView:
-        deadline = request.deadline
-        if self._advised is not None and self._advised[:2] == (revision, request):
-            view = self._advised[2]
-            if not view.complete and all(offer.corrections for offer in view.offers):
-                deadline = LONGER  # there was too little time: asked once more, there is more of it
-            elif all(offer.id in self._kept for offer in (*view.offers, *view.if_checked)):
-                return view
+        before = self._advised if self._advised is not None and self._advised.request == request else None
+        if before is None:
+            advice = await self._searched(request, request.deadline)
+        elif before.advice.complete:
+            if before.view.revision == revision and self._are_kept(before.view):
+                return before.view
+            advice = before.advice  # only the mode is another: what leads on from here is the same
+        else:
+            advice = await self._searched_on(request, before.advice)
+        self._advised = _Advised(request, advice, self._shown(advice, revision, request))
+        return self._advised.view
+
+    async def _searched(self, request: AdviceRequest, deadline: float) -> Advice:
         until = Timestamp.now().monotonic + deadline
-        asked = replace(request, deadline=deadline, until=until)
-        advice = await self._advisor.answer(asked, deadline + WAITING)
+        asked = replace(request, deadline=deadline, until=until, patient=deadline > request.deadline)
+        return await self._advisor.answer(asked, deadline + WAITING)
+
+    async def _searched_on(self, request: AdviceRequest, before: Advice) -> Advice:
+        """Search again with more time. What was found `before` still leads on, also where less is found now."""
+        try:
+            advice = await self._searched(request, LONGER)
+        except CommandRefused:
+            if before.offers:
+                return before
+            raise
+        if advice.complete:
+            return advice
+        again = {_meaning(offer) for offer in advice.offers}
+        offers = (*advice.offers, *(offer for offer in before.offers if _meaning(offer) not in again))
+        reasons = advice.reasons if all(offer.only_if_checked for offer in offers) else None
+        return replace(advice, offers=tuple(sorted(offers, key=lambda offer: offer.rank)), reasons=reasons)
+
+    def _shown(self, advice: Advice, revision: int, request: AdviceRequest) -> AdviceView:
         kept = self._keep(advice.offers, revision)
-        view = AdviceView(
+        reasons = advice.reasons
+        return AdviceView(
             revision=revision,
             offers=[offer for offer in kept if not offer.only_if_checked],
             if_checked=[offer for offer in kept if offer.only_if_checked],
             reasons=None
-            if advice.reasons is None
-            else diagnosis_view(self._execution.automaton, advice.reasons, self._unused, request.fixed),
+            if reasons is None
+            else diagnosis_view(self._execution.automaton, reasons, self._unused, request.fixed),
             complete=advice.complete,
             seconds=advice.seconds,
         )
-        self._advised = revision, request, view
-        return view
+
+    def _are_kept(self, view: AdviceView) -> bool:
+        return all(offer.id in self._kept for offer in (*view.offers, *view.if_checked))
 
     @answers(AskGoal)
     async def goal(self, query: AskGoal) -> OfferView:
@@ -259,6 +294,12 @@ def _waiting_goals(execution: Executor) -> Goals:
 def violated_goals(execution: Executor) -> Goals:
     """The goals of active operations whose formulas were violated."""
     return execution.pursued.select(execution.active & execution.pursued.goals.keys() - execution.pursued.hopeful)
+
+
+def _meaning(offer: RecoveryProposal) -> object:
+    """Return what an offer asks for; after acts of people it is one, whatever plan it was found with."""
+    acts = offer.corrections, offer.physical, offer.online, offer.in_service
+    return offer.kind, offer.operation, acts, None if any(acts) else offer.goal
 
 
 def _no_plan(execution: Executor, aimed: GoalPlan, out_of_service: Collection[str]) -> CommandRefused:

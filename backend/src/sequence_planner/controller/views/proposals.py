@@ -12,7 +12,8 @@ from sequence_planner.texts.message import Message
 
 class ValueChangeView(View):
     """A variable that gets another value; `now` is null where it is unknown. `so` says in words that it has it, and
-    `by_hand` what a person does at the station for that, where the model says so.
+    `by_hand` what a person does at the station for that, where the model says so; of a correction only where it is not
+    so before a person has done that.
     """
 
     name: str

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from types import MappingProxyType
 from typing import Final
 
-from sequence_planner.automaton.automaton import Automaton
-from sequence_planner.automaton.dependencies import is_along
+from sequence_planner.automaton.automaton import Ability, Automaton
+from sequence_planner.automaton.dependencies import is_along, tasks_for
 from sequence_planner.automaton.lifting.sentences import sentences_of
 from sequence_planner.controller.commands.command import CommandRefused, TextPlace
 from sequence_planner.controller.views.proposals import (
@@ -56,7 +57,7 @@ def offer_view(
         online=list(offer.online),
         in_service=list(offer.in_service),
         assumed=_changes(automaton, offer.assumed),
-        corrections=_changes(automaton, offer.corrections),
+        corrections=_changes(automaton, offer.corrections, _tasks(automaton, offer)),
         errand=None if offer.operator_plan is None else plan_preview(automaton, offer.operator_plan),
         ends=None if offer.operator_plan is None else end_text(offer.goal, offer.into_safe),
         ends_message=None if offer.operator_plan is None else end_message(automaton, offer.goal, offer.into_safe),
@@ -120,7 +121,7 @@ def needs_restart(offer: RecoveryProposal) -> bool:
 def offer_title(automaton: Automaton, offer: RecoveryProposal) -> Message:
     """Say what is to be done, in one line."""
     first, *then = [*_parts(automaton, offer)] or [message("offer.nothing")]
-    if offer.only_if_checked:
+    if offer.only_if_checked and not offer.by_hand:
         text = message("offer.checked", what=first)
     else:
         text = Message(f"{first.id}-first", first.arguments)
@@ -151,7 +152,9 @@ def _parts(automaton: Automaton, offer: RecoveryProposal) -> Iterator[Message]:
         yield message("offer.return", titles=returning)
     if offer.physical:
         yield from _by_people(automaton, offer)
-    if offer.only_if_checked:
+    if offer.by_hand:
+        yield message("offer.task", tasks=[ability.title for ability in _tasks(automaton, offer).values()])
+    elif offer.only_if_checked:
         yield message("list", items=_so(automaton, offer.corrections))
     elif offer.corrections:
         yield message("offer.correct", changes=_each(automaton, offer.corrections, "offer.to"))
@@ -307,14 +310,29 @@ def _step(automaton: Automaton, tick: int, name: str, times: tuple[float, float]
     )
 
 
-def _changes(automaton: Automaton, changes: Sequence[ValueChange]) -> list[ValueChangeView]:
+def _tasks(automaton: Automaton, offer: RecoveryProposal) -> Mapping[str, Ability]:
+    """Return the abilities by which a person does what is then corrected, by the estimates that are."""
+    tasks = tasks_for(automaton)
+    return {change.name: tasks[change.name, change.new] for change in offer.corrections if change.name in offer.by_hand}
+
+
+NO_TASKS: Final[Mapping[str, Ability]] = MappingProxyType({})
+
+
+def _changes(
+    automaton: Automaton, changes: Sequence[ValueChange], tasks: Mapping[str, Ability] = NO_TASKS
+) -> list[ValueChangeView]:
     return [
-        ValueChangeView(name=change.name, now=change.old, then=change.new, so=so, by_hand=_by_hand(automaton, change))
+        ValueChangeView(
+            name=change.name, now=change.old, then=change.new, so=so, by_hand=_by_hand(automaton, change, tasks)
+        )
         for change, so in zip(changes, _so(automaton, changes), strict=True)
     ]
 
 
-def _by_hand(automaton: Automaton, change: ValueChange) -> Message | None:
+def _by_hand(automaton: Automaton, change: ValueChange, tasks: Mapping[str, Ability]) -> Message | None:
+    if (task := tasks.get(change.name)) is not None and task.human is not None:
+        return message("offer.by-hand", how=task.human.text)
     how = sentences_of(automaton).tell_by_hand(change.name, change.new)
     return None if how is None else message("offer.by-hand", how=how)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections import OrderedDict
 from collections.abc import Callable, Iterator
+from functools import partial
 
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.state_set import Supervisor
@@ -66,19 +67,21 @@ class Advisor:
         here = self._situation(request)
         station = self._station(stalls(self._automaton, here.state, request.stalled))
         awaited = written_by(self._automaton, request.stalled - request.explained)
-        consultation = RecoverySearch(station, here, budget.part(_SHARE), request.violated, awaited)
+        consultation = RecoverySearch(
+            station, here, budget.part(_SHARE), request.violated, awaited, patient=request.patient
+        )
 
         def search() -> Iterator[RecoveryProposal]:
             right = written_by(self._automaton, request.explained) - awaited
             aside = only_written(self._automaton, request.stalled) | right
+            options = partial(station.options.acts, here, request.last, request.fixed, aside, request.answered)
             if not here.goals and request.waiting:
-                acts = station.options.acts(here, request.last, request.fixed, aside)
-                begins = [*beginnings(consultation, self._changes, acts, request.waiting, request.impossible)]
+                begins = [*beginnings(consultation, self._changes, options(), request.waiting, request.impossible)]
                 if begins:  # else nothing would be wrong with waiting for good
                     yield from begins
                     return
             yield from consultation.as_it_is()
-            acts = [] if consultation.goes_on else station.options.acts(here, request.last, request.fixed, aside)
+            acts = [] if consultation.goes_on else options()
             fewest = FewestActs(consultation, self._changes, request.impossible, self._most)
             yield from fewest.likely(acts)
             yield from consultation.without_some()

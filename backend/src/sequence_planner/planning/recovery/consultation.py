@@ -60,7 +60,8 @@ class RecoverySearch:
     """Looks for offers from the situation `here`. `undecided` says that there may be more than were found.
 
     Goals that were `violated` are none of the situation's: only the reset of their operations makes them so again.
-    `awaited` are the variables that devices should have changed, and have not.
+    `awaited` are the variables that devices should have changed, and have not. Nobody waits for the first offer of one
+    that is `patient`.
     """
 
     def __init__(
@@ -70,11 +71,14 @@ class RecoverySearch:
         budget: Budget,
         violated: Goals = (),
         awaited: frozenset[str] = frozenset(),
+        *,
+        patient: bool = False,
     ) -> None:
         self.undecided = False
         self.goes_on = False  # as it is, towards all goals
         self.helped = False  # by an offer that reaches all goals, and does more than say so
         self._mended = False  # by one that is done where something is wrong
+        self._patient = patient
         self.here = here
         self.prover = station.prover
         self.awaited = awaited
@@ -90,7 +94,7 @@ class RecoverySearch:
         """Take note of an offer that reaches all goals, and does more than say so: who waits for it is told soon, and
         somewhat later where there may be a better one, as this is done `elsewhere` than where something is wrong.
         """
-        if not self.helped or (not elsewhere and not self._mended):
+        if not self._patient and (not self.helped or (not elsewhere and not self._mended)):
             self.budget = self.budget.part(_BETTER if elsewhere else _BESIDE)
         self.helped, self._mended = True, self._mended or not elsewhere
 

@@ -69,7 +69,7 @@ class Making:
         ]
         effort = ProposalEffort(
             changes=len(corrections),
-            physical=sum(act.kind is ActKind.DEVICE for act in acts),
+            physical=sum(act.kind in (ActKind.DEVICE, ActKind.TASK) for act in acts),
             elsewhere=sum(act.kind is ActKind.DEVICE and not self._helps(act) for act in acts),
             returns=sum(act.kind in (ActKind.RETURN, ActKind.SERVICE) for act in acts),
             starts=0 if plan is None else len(plan.starts),
@@ -101,6 +101,7 @@ class Making:
             claims=self.claims(corrections),
             records=self.records(changed),
             into_safe=manual is not None and manual.into_safe,
+            by_hand=tuple(act.name for act in acts if act.kind is ActKind.TASK),
         )
 
     def _helps(self, act: Act) -> bool:

@@ -8,6 +8,7 @@ from functools import lru_cache
 from itertools import accumulate, combinations
 
 from sequence_planner.automaton.automaton import Automaton, Effect, Flag, Kind, Operation, State, target
+from sequence_planner.automaton.dependencies import tasks_for
 from sequence_planner.automaton.tick import effect_writes, writes
 from sequence_planner.core.immutable import Immutable, replace
 from sequence_planner.language.evaluator import evaluate, holds
@@ -148,7 +149,8 @@ class RecoveryProposal(Immutable):
     before; `at_rest` says that it ends in one of the station's safe rest states, with devices that are where they were
     told to be. The corrections alone would have the goals that it `claims` reached, or nearer: that is for somebody to
     say who has checked it. What is done at devices can be what abilities wait for; what these note then it `records`.
-    One `into_safe` begins outside the safe states, and is not at its end before it is inside.
+    One `into_safe` begins outside the safe states, and is not at its end before it is inside. What is corrected of
+    `by_hand` is so only once a person has done the task for it.
     """
 
     kind: OfferKind
@@ -172,6 +174,7 @@ class RecoveryProposal(Immutable):
     claims: tuple[str, ...] = ()
     records: tuple[ValueChange, ...] = ()
     into_safe: bool = False
+    by_hand: tuple[str, ...] = ()
 
     @property
     def only_if_checked(self) -> bool:
@@ -252,6 +255,7 @@ class ActKind(StrEnum):
     """The place where something is changed."""
 
     ESTIMATE = "estimate"  # in what is believed
+    TASK = "task"  # in the product, as a person does a task, who says so then
     DEVICE = "device"  # measured variables, at a device
     RETURN = "return"  # a resource is back online, and says what it last said
     SERVICE = "service"  # an ability is back in service
@@ -272,6 +276,7 @@ class Options:
     def __init__(self, automaton: Automaton, effects: tuple[Effect, ...]) -> None:
         """`effects` are all that devices are known to do, also what nobody counts on."""
         self._automaton = automaton
+        self._tasks = tasks_for(automaton)
         self._effects = [(effect, frozenset(map(target, effect.actions))) for effect in effects]
 
     def acts(
@@ -280,12 +285,17 @@ class Options:
         last: Mapping[str, Value],
         fixed: frozenset[str],
         aside: frozenset[str] = frozenset(),
+        answered: frozenset[str] = frozenset(),
     ) -> list[Act]:
         """All of them, the most plausible first, but those at devices that change nothing but variables `aside`.
 
         Of what is unknown only a resource that comes back says more.
         """
-        acts = [*self._corrections(here.state, fixed), *self._physical(here, fixed), *self._back(here, last, fixed)]
+        acts = [
+            *self._corrections(here.state, fixed, answered),
+            *self._physical(here, fixed),
+            *self._back(here, last, fixed),
+        ]
         different: dict[object, Act] = {}
         for act in sorted(acts, key=lambda act: act.rank):
             same = act.values if act.kind is ActKind.DEVICE else act.name  # other variables may ask for the same
@@ -293,11 +303,15 @@ class Options:
                 different.setdefault((act.kind, same, act.values), act)
         return list(different.values())
 
-    def _corrections(self, state: State, fixed: frozenset[str]) -> Iterator[Act]:
+    def _corrections(self, state: State, fixed: frozenset[str], answered: frozenset[str]) -> Iterator[Act]:
         for name in self._automaton.names(Kind.ESTIMATED):
             if name not in fixed:
                 for value in self._others(state, name):
                     yield Act(ActKind.ESTIMATE, name, ((name, value),), _ESTIMATED)
+            elif name in answered:
+                for value in self._others(state, name):
+                    if (name, value) in self._tasks:
+                        yield Act(ActKind.TASK, name, ((name, value),), _EXPECTED)
 
     def _physical(self, here: RecoverySituation, fixed: frozenset[str]) -> Iterator[Act]:
         """For each value of a measured variable what effects would do with it too, and then that alone."""
@@ -452,7 +466,7 @@ class Changes:
 
 def kind_of(acts: Iterable[Act]) -> OfferKind:
     """Return what an offer of nothing but these acts is."""
-    estimates = {act.kind is ActKind.ESTIMATE for act in acts}
+    estimates = {act.kind in (ActKind.ESTIMATE, ActKind.TASK) for act in acts}
     if len(estimates) == 2:
         return OfferKind.COMBINED
     return OfferKind.CORRECTION if True in estimates else OfferKind.PHYSICAL

@@ -141,9 +141,13 @@ class FewestActs:
         self._number: Counter[_Way] = Counter()
 
     def likely(self, acts: list[Act]) -> Iterator[RecoveryProposal]:
-        """Offers by the most plausible acts, one at a time."""
+        """Offers by the most plausible acts, one at a time; what a person does in place of the station also where the
+        devices have to be brought back besides.
+        """
         changed = list(self._changed([act for act in acts if act.rank <= LIKELY], 1))
-        yield from self._tried(changed, [], [])
+        dead: list[_Changed] = []
+        yield from self._tried(changed, dead, [])
+        yield from self._combined([each for each in dead if each.acts[0].kind is ActKind.TASK])
 
     def offers(self, acts: list[Act]) -> Iterator[RecoveryProposal]:
         """Offers by the acts; those of one thing less come first."""

@@ -58,10 +58,13 @@ export const restart = {
 		questions: (n: number): string => `${count(n, 'question', 'questions')} to answer.`,
 		outputs: (n: number): string => `${count(n, 'output', 'outputs')} to decide on.`,
 		confirm: 'Look whether it is still as before.',
+		/** Before what has changed without a command. */
+		afterHand: 'Look whether what the station believes is still true.',
 		said: (by: string, at: string, what: string): string => `${by} said at ${at}: ${what}.`,
 		ways: (n: number): string => `${count(n, 'way', 'ways')}, least effort first.`,
 		one: 'One way.',
 		none: 'No way is known yet.',
+		checked: (n: number): string => `${count(n, 'way', 'ways')}, only if you have checked.`,
 		nothing: 'Nothing has to be carried out.',
 		afterwards: 'The ways follow from it.',
 		taken: (title: string, at: string): string => `${title}, done at ${at}.`,
@@ -107,6 +110,9 @@ export const restart = {
 		stop: 'Stop it',
 		stopMeaning: 'Running steps finish. Nothing more of it starts.',
 		done: (at: string): string => `Done at ${at}:`,
+		/** What it was for is so, before it is at its end. */
+		reached: (at: string): string => `It has brought about at ${at} what it was for:`,
+		stillMoves: (names: string, n: number): string => `${names} still ${n === 1 ? 'moves' : 'move'}: keep clear until it stands still`,
 		ended: (at: string): string => `Ended before it was done, at ${at}:`
 	},
 
@@ -168,12 +174,18 @@ export const restart = {
 		least: 'Recommended',
 		during: 'While something is carried out nothing else is offered.',
 		operator: 'An operator is shown the ways back.',
-		incomplete: 'The search ended early; there may be more ways.',
+		unfinished: 'Still looking: there may be better ways.',
+		incomplete: 'The search ended early; there may be better ways.',
 		none: 'There is no way back from this state.',
 		noneFound: 'No way back was found in the time there is; that there is none is not proven.',
 		noneToDo: 'Nothing that devices or people could do from here is known to lead back.',
+		nothingElse: 'All ways were looked for.',
+		whyUnknown: (operations: readonly string[]): string =>
+			`Why was not found in the time there is.${operations.length === 0 ? '' : ` From here nothing leads to: ${operations.join(', ')}.`}`,
+		byHand: 'What the plan cannot do a person may do by hand. Do it at the station, then correct what the station believes.',
+		tasksMeaning: 'It is corrected, and so counts as done, as soon as you confirm that you have done it.',
 		ifChecked: 'Only if you have checked',
-		ifCheckedMeaning: 'Each of these says that work on the product is already done. The station knows of nobody who did it. Take one only if you have seen that it is so.',
+		ifCheckedMeaning: 'Each of these says that something is not as the station believes, and nothing that it knows speaks for that. Take one only if you have seen that it is so.',
 		onlyIf: (claims: string): string => `Already so: ${claims}`,
 		records: (values: string): string => `Then the station notes that ${values}.`,
 		claims: (titles: string): string => `It would count as done, or nearer to it: ${titles}.`,
@@ -204,6 +216,8 @@ export const restart = {
 		proven: 'Proven',
 		/** Of a plan that counts on what is not heard. */
 		provenIf: 'Proven if nothing has changed',
+		/** Of one that corrects something. */
+		provenIfSo: 'Proven if it is so',
 		provenMeaning: 'Taken step by step from the state as it is, to a plan for what is to be done.',
 		unproven: 'Not proven',
 		outsideShort: 'Starts outside the safe states',
@@ -245,6 +259,8 @@ export const restart = {
 		endsSafe: (time: string): string => `ends after ${time}, in a safe state`,
 		movesFirst: 'moves first',
 		nothing: 'Nothing is sent. The devices do it by themselves.',
+		/** Of what is to be brought about, and holds. */
+		already: 'It is so already. Nothing has to be started, and nothing waited for.',
 		until: 'until',
 		safe: 'the station is back in its safe states',
 		and: 'and',
@@ -265,6 +281,8 @@ export const restart = {
 		onlyCorrects: 'No start. Only what the station believes is changed.',
 		until: 'It ends when',
 		haveRead: (n: number): string => (n === 1 ? 'This start may be carried out.' : `All ${n} starts may be carried out.`),
+		nobodyIn: (device: string, what: string, n: number): string =>
+			`Nobody reaches in: ${device} moves first (${what}). ${n === 1 ? 'This start' : `All ${n} starts`} may be carried out.`,
 		mayWait: 'I will wait for it.',
 		haveSeen: (so: string): string => `I have looked: ${so}.`,
 		confirm: 'Confirm what is above.',
@@ -279,6 +297,8 @@ export const restart = {
 
 	byHand: {
 		title: 'None of these fits',
+		/** Where there are none. */
+		others: 'Something else…',
 		about: 'You see the plan to what you ask for before anything starts.',
 		reset: 'Reset an operation',
 		resetMeaning: 'The station is brought to where the operation begins, and it begins again.',
