@@ -351,6 +351,19 @@ def test_what_a_person_has_said_is_missing_a_person_may_put_in_by_hand_and_then_
     asyncio.run(scenario())
 
 
+def test_the_reset_of_an_operation_whose_beginning_holds_neither_starts_nor_awaits_anything() -> None:
+    async def scenario() -> None:
+        async with desk(precondition="at == home") as there:
+            there.execution.start_production()
+            there.tick()
+            there.enter(Mode.PAUSED)
+            offer = await there.offers.reset(AskReset(operation="deliver"))
+            assert offer.errand is not None
+            assert (offer.errand.steps, offer.errand.ticks) == ([], 0)
+
+    asyncio.run(scenario())
+
+
 def test_all_who_ask_at_once_get_one_answer_though_one_of_them_leaves(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(proposals, "WAITING", 60.0)  # the advisor is only being started
 
