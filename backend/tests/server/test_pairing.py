@@ -57,6 +57,8 @@ def test_a_watch_is_offered_paired_confirmed_and_shown_its_tasks(client: httpx.C
         "alarm": None,
         "next": None,
         "progress": {"done": 0, "all": 1},
+        "doing": [],
+        "awaits_order": False,
         "tasks": {OWN: station().tasks[OWN].model_dump(mode="json")},
     }
 
