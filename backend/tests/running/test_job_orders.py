@@ -144,7 +144,7 @@ def test_orders_are_worked_and_nothing_is_lost_or_doubled(station: Mortal) -> No
     station.begin_production()
 
     mes.wait(is_state(mes, "urgent", "Running"), "the most urgent is not begun")
-    mes.wait(lambda: mes.get("early")["waits_for"] == ["Engine urgent is in work"], "it is not said what it waits for")
+    mes.wait(lambda: mes.get("early")["waits_for"] == ["urgent is in work"], "it is not said what it waits for")
     assert mes.get("tomorrow")["waits_for"][0].startswith("not before ")
     assert mes.client.put("mode", json={"mode": "paused"}).status_code == 403  # whatever it orders
 

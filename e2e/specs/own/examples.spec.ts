@@ -130,7 +130,8 @@ test('a part is copied out of an example; the station begins with one, and undo 
 	await expect(robot).toHaveCount(0);
 	await expect(page.getByTestId('check')).toHaveAttribute('data-verdict', /good|warnings/, { timeout: 60_000 });
 	await expect(form(page).getByLabel('Name', { exact: true })).toHaveValue('north_gate');
-	await toasts(page).getByRole('button', { name: 'Take back' }).click();
+	// What was pasted before may still be told beside it.
+	await toasts(page).locator('.toast', { hasText: 'Begun with' }).getByRole('button', { name: 'Take back' }).click();
 	await expect(row(page, 'resources/robot_1.yaml')).toHaveCount(0);
 	await expect(robot).toBeVisible();
 

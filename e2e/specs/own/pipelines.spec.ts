@@ -261,7 +261,7 @@ test('comments go along with a stage, nothing is cut or connected that cannot be
 	await expect(page.getByRole('status').filter({ hasText: '2 changes are being made' })).toBeVisible();
 	await expect.poll(async () => (await order()).toSorted(), { timeout: 15_000 }).toEqual(['discretise', 'limit', 'remember', 'tick']);
 	await expect(page.getByText('being made…')).toBeHidden();
-	await page.unroute('**/api/v1/model/changes');
+	await page.unrouteAll({ behavior: 'wait' }); // what is still on its way goes on to the server
 
 	// The focus stays with what is moved, by the button that still leads on.
 	await expect.poll(order).toEqual(['discretise', 'remember', 'tick', 'limit']);

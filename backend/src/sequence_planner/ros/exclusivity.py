@@ -22,11 +22,13 @@ DISCOVERY = 1.5  # seconds in which peers on the same machine are found
 LONGEST_LEASE = 22.0  # seconds after which a dead participant of any vendor is forgotten
 
 
-async def require_sole_publisher(transport: Transport, topics: Mapping[str, str], who: str) -> None:
+async def require_sole_publisher(
+    transport: Transport, topics: Mapping[str, str], who: str, discovery: float | None = None
+) -> None:
     """Wait until nobody else publishes `topics` (name to type); `who` says for whom in the message.
 
-    `transport` is one of its own for this question, which must not publish them. Raises `NotAloneError` naming the
-    topic and the other node, and `TransportError`.
+    Others are looked for during `discovery` seconds. `transport` is one of its own for this question, which must not
+    publish them. Raises `NotAloneError` naming the topic and the other node, and `TransportError`.
     """
     heard: set[str] = set()
 
@@ -35,7 +37,7 @@ async def require_sole_publisher(transport: Transport, topics: Mapping[str, str]
 
     for topic, type_name in topics.items():
         transport.subscribe(topic, type_name, QualityOfService.SENSOR_DATA, listen)
-    await asyncio.sleep(DISCOVERY)
+    await asyncio.sleep(DISCOVERY if discovery is None else discovery)
     patience = time.monotonic() + LONGEST_LEASE
     while others := {
         endpoint.topic: endpoint.node

@@ -33,6 +33,9 @@ from sequence_planner.station import ReadyStation
 
 LOG = structlog.get_logger(__name__)
 
+# Seconds in which others that emulate the same devices are found. Devices are on the network before the controller that
+# begins with them ends the participant by which it looks for others: who comes in that moment may never be known whole.
+ALONE = 1.0
 STEP = 0.02  # seconds between two looks at the devices, at least
 KEEP_EVERY = 1.0  # seconds between two notes of how they stand
 REPORT_EVERY = 0.1  # seconds between two reports that say the same
@@ -82,7 +85,7 @@ async def emulate(emulation: Emulation, connect: Callable[[str], Transport]) -> 
     reported |= {ActionNames(name).status: GOAL_STATUSES for name in served}
     question = connect(f"{NODE}_check")
     try:
-        await require_sole_publisher(question, reported, "the emulated devices")
+        await require_sole_publisher(question, reported, "the emulated devices", ALONE)
     finally:
         question.close()
     await _Life(emulation, connect).run()

@@ -68,7 +68,7 @@ _log = structlog.get_logger(__name__)
 
 # Peers are told of endpoints more than once.
 
-TOLD_AGAIN: Final = (3.0, 15.0)
+TOLD_AGAIN: Final = (1.0, 3.0, 15.0)
 """Seconds after which peers are told of an endpoint once more.
 
 Discovery is reliable, and yet a peer that joins in just the moment in which an endpoint is made has been seen never to
