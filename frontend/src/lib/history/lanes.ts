@@ -111,7 +111,7 @@ function troublesOf({ alarms, marks }: TimeLine, { from }: Window, resource: str
 	const came = marks.filter(({ kind, content }) => kind === 'alarm' && (partOf(content, 'what') ?? content)['event'] === 'came');
 	return [...stood, ...came].flatMap(({ time, content }) => {
 		const what = partOf(content, 'what') ?? content;
-		if ( !BROKEN.has(what['kind']) || !textsOf(what['resources']).includes(resource)) return [];
+		if (!BROKEN.has(what['kind']) || !textsOf(what['resources']).includes(resource)) return [];
 		const alarm = what as unknown as Alarm;
 		return [{ time, cause: leading(wordsOf(alarm).text)[0], priority: alarm.priority }];
 	});
