@@ -41,6 +41,9 @@ export function shares(): Group[] {
 	};
 	const only = (name: string) => (id: string, asked: Asked) => (layer(id, asked) === name ? name : null);
 	return [
+		// SvelteKit sets what a document says of the build, such as its version, before its other modules read it at once. So what
+		// its first script needs lies in a file that brings nothing else.
+		{ name: 'begin', test: /\/kit\/src\/runtime\/client\/payload\.js$|vite\/preload-helper/, priority: 6 },
 		{ name: only('core'), priority: 5 },
 		{ name: only('door'), priority: 4 },
 		{ name: only('frame'), priority: 3 },

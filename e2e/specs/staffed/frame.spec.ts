@@ -153,3 +153,14 @@ test('every page has its help: a picture whose numbers are those of the lines @t
 		await expect(button).toBeFocused();
 	}
 });
+
+test('a typed address that leads nowhere is told once, and leads to the station', async ({ browse }) => {
+	const page = await browse(EVA, '/operate');
+	await expect(page.getByRole('heading', { name: 'There is no such page' })).toBeVisible();
+	let loads = 0;
+	page.on('load', () => (loads += 1));
+	expect(await findings(page)).toEqual([]);
+	await page.getByRole('link', { name: 'To the station' }).click();
+	await expect(page.getByTestId('strip')).toHaveAttribute('data-live', 'true');
+	expect(loads).toBe(0);
+});
