@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import count
 from typing import Final, Literal
@@ -27,6 +27,8 @@ _CARD, _TRACK, _NARROWEST = 44.0, 48.0, 150.0
 _BAND, _CHIP, _LINE, _LEAF = 164.0, 200.0, 84.0, 132.0
 _FEW_STOPS = 4  # of what moves within its card
 _LETTER = 6.0  # wide, at most
+_TELLING = 8  # letters of a word that tell something
+_TEXT = 11.0  # from one line of a title to the next
 _PRODUCT, _EDGE, _CELL, _LOOSE = 300.0, 24.0, 39.0, 140.0
 _ROW, _LOOSE_ROW, _HEADING = 44.0, 40.0, 18.0
 _MOST_COLUMNS = 12
@@ -84,6 +86,38 @@ class _Family:
         return -(-len(self.members) // self.columns)
 
 
+@dataclass(frozen=True)
+class _Line:
+    """What moves along a line across the picture: where its stops are, and the room of their titles."""
+
+    motion: Motion
+    main: frozenset[str]
+    hub: str | None  # below what moves
+    places: Mapping[str, float]
+    rooms: Mapping[str, float]
+    titles: Mapping[str, Mapping[str, str]]
+    hidden: frozenset[str]  # without a title
+
+    def _folds(self, stops: Iterable[str]) -> bool:
+        named = [stop for stop in stops if stop not in self.hidden]
+        return any(_longest(each, self.titles[each]) * _LETTER > self.rooms[each] for each in named)
+
+    @property
+    def at(self) -> float:
+        """How far below the top of the band the line is: of two lines is what is written below what moves."""
+        return _LINE + (_TEXT if self.hub is not None and self._folds([self.hub]) else 0.0)
+
+    @property
+    def leaves_at(self) -> float:
+        """How far below the top of the band the branches end."""
+        return self.at + _LEAF - _LINE
+
+    @property
+    def height(self) -> float:
+        """The height of the band, with titles of two lines below its branches where one does."""
+        return self.leaves_at + _BAND - _LEAF + (_TEXT if self._folds(set(self.titles) - self.main) else 0.0)
+
+
 def _families(automaton: Automaton) -> tuple[list[_Family], list[str]]:
     """What is estimated of the product: what is indexed, and the rest."""
     members: dict[str, list[str]] = {}
@@ -124,8 +158,14 @@ class _Layout:
 
     def view(self) -> MimicView:
         """All of it."""
-        top = 10.0 if not self._bands else len(self._bands) * _BAND
-        product = self._product_box(top)
+        product = self._product_box()
+        last = len(self._bands) - 1
+        lines = [
+            self._line(motion, product, self._fan(motion) if number == last else ())
+            for number, motion in enumerate(self._bands)
+        ]
+        top = sum(each.height for each in lines) or 10.0
+        product = product and product.model_copy(update={"y": top})
         symbols: list[MimicSymbol] = []
         bottom = top
         if product is not None:
@@ -134,22 +174,24 @@ class _Layout:
         people, below_people = self._placed_people(product, bottom)
         cards = self._placed_cards(product, top, below_people)
         symbols += [self._card(name, box) for name, box in {**people, **cards}.items()]
-        for number, motion in enumerate(self._bands):
-            fan = self._fan(motion) if number == len(self._bands) - 1 else ()
-            symbols.append(self._band(motion, number * _BAND, product, fan))
+        band = 0.0
+        for line in lines:
+            symbols.append(self._band(line, band))
+            band += line.height
         height = max([100.0, *(each.box.y + each.box.height for each in symbols)]) + 16
         return MimicView(made_from="model", width=WIDTH, height=height, symbols=symbols, findings=[])
 
     # The product.
 
-    def _product_box(self, top: float) -> Box | None:
+    def _product_box(self) -> Box | None:
+        """The box of the product as if nothing were above it."""
         if not self._indexed and not self._loose:
             return None
         across = max((each.columns * _CELL for each in self._indexed), default=0.0)
         width = max(_PRODUCT, across + 2 * _EDGE)
         height = 2 * _EDGE + sum(each.rows * _ROW + _HEADING for each in self._indexed)
         height += -(-len(self._loose) // self._loose_columns(width)) * _LOOSE_ROW
-        return Box(x=(WIDTH - width) / 2, y=top, width=width, height=height + _HEADING)
+        return Box(x=(WIDTH - width) / 2, y=0.0, width=width, height=height + _HEADING)
 
     @staticmethod
     def _loose_columns(width: float) -> int:
@@ -195,14 +237,15 @@ class _Layout:
 
     # What has many stops: a line with branches, across the whole picture.
 
-    def _band(self, motion: Motion, top: float, product: Box | None, fan: Sequence[str]) -> MimicSymbol:
+    def _line(self, motion: Motion, product: Box | None, fan: Sequence[str]) -> _Line:
+        """Where the stops of a line and its branches are from left to right."""
         main, leaves = _main_line(motion, fan)
         hub = next((each for each in main if any(leaf in fan for leaf in leaves[each])), None)
         ordered = [each for each in main if each != hub]
         if hub is not None:  # above the product
             ordered.insert(len(ordered) // 2, hub)
         beside = {each: [leaf for leaf in leaves[each] if leaf not in fan] for each in ordered}
-        places: dict[str, tuple[float, float]] = {}
+        places: dict[str, float] = {}
         rooms: dict[str, float] = {}
         fan_box = product if hub is not None and product is not None else None
         if fan_box is None:
@@ -217,32 +260,39 @@ class _Layout:
             for each in names:
                 room = (end - start) / units
                 count = max(1, len(beside[each]))
-                places[each], rooms[each] = (x + room * count / 2, top + _LINE), room * count
+                places[each], rooms[each] = x + room * count / 2, room * count
                 for number, leaf in enumerate(beside[each]):
-                    places[leaf], rooms[leaf] = (x + room * (number + 0.5), top + _LEAF), room
+                    places[leaf], rooms[leaf] = x + room * (number + 0.5), room
                 x += room * count
         if fan_box is not None and hub is not None:
             family = self._indexed[0]
-            places[hub], rooms[hub] = (fan_box.x + fan_box.width / 2, top + _LINE), fan_box.width / 2
+            places[hub], rooms[hub] = fan_box.x + fan_box.width / 2, fan_box.width / 2
             cells = {leaf: self._cell(fan_box, family, family.indices.index(leaf)) for leaf in fan}
             for leaf, x in cells.items():
-                places[leaf], rooms[leaf] = (x, top + _LEAF), 0.0
+                places[leaf], rooms[leaf] = x, 0.0
             for number, leaf in enumerate(beside[hub]):  # at the edge of the product
                 side, order = (-1, number // 2) if number % 2 else (1, number // 2)
                 edge = min(cells.values()) if side < 0 else max(cells.values())
                 most = (fan_box.width - (max(cells.values()) - min(cells.values()))) / 2
                 steps = -(-len(beside[hub]) // 2)
-                places[leaf] = (edge + side * most * (order + 1) / (steps + 1), top + _LEAF)
+                places[leaf] = edge + side * most * (order + 1) / (steps + 1)
                 rooms[leaf] = most / (steps + 1)
         titles = titles_of(self._automaton, motion.position)
+        named = {stop: titles.get(stop, {}) for stop in motion.stops}
+        hidden = {each for each in named if each in fan or rooms[each] < _least_room(each, named[each])}
+        return _Line(motion, frozenset(main), hub, places, rooms, named, frozenset(hidden))
+
+    def _band(self, line: _Line, top: float) -> MimicSymbol:
+        """What moves along a line, whose band begins at `top`."""
+        motion = line.motion
         stops = [
             _stop(
                 stop,
-                titles.get(stop, {}),
-                places[stop],
-                "none" if stop in fan or rooms[stop] < 3 * _LETTER else "above" if stop in main else "below",
-                rooms[stop],
-                branch=stop not in main,
+                line.titles[stop],
+                (line.places[stop], top + (line.at if stop in line.main else line.leaves_at)),
+                "none" if stop in line.hidden else "above" if stop in line.main else "below",
+                line.rooms[stop],
+                branch=stop not in line.main,
             )
             for stop in motion.stops
         ]
@@ -342,9 +392,25 @@ def _names(name: str) -> Iterator[str]:
     yield from (f"{name}_{number}" for number in count(2))
 
 
+def _written(value: str, title: Mapping[str, str]) -> list[str]:
+    """What a stop is called, in each language that the model has a name in."""
+    return list(title.values()) or [value.replace("_", " ")]
+
+
+def _longest(value: str, title: Mapping[str, str]) -> int:
+    """Letters of the longest of what a stop is called."""
+    return max(map(len, _written(value, title)))
+
+
+def _least_room(value: str, title: Mapping[str, str]) -> float:
+    """The room in which a title tells something: that of its longest word, or of what is left of a very long one."""
+    words = [word for text in _written(value, title) for word in text.split()]
+    return _LETTER * min(max(map(len, words), default=0), _TELLING)
+
+
 def _stop(
     value: str,
-    title: dict[str, str],
+    title: Mapping[str, str],
     at: tuple[float, float],
     label: Literal["above", "below", "none"],
     room: float,
@@ -353,7 +419,9 @@ def _stop(
 ) -> MimicStop:
     """A stop; in whole numbers, its title keeps apart from those beside it."""
     room = ROOM if label == "none" else float(math.floor(room - 1))
-    return MimicStop(value=value, title=title, x=_whole(at[0]), y=_whole(at[1]), label=label, room=room, branch=branch)
+    return MimicStop(
+        value=value, title=dict(title), x=_whole(at[0]), y=_whole(at[1]), label=label, room=room, branch=branch
+    )
 
 
 def _columns(start: float, end: float, top: float) -> list[list[float]]:

@@ -63,3 +63,16 @@ export function fit(text: string, room: number, font: Font, width: (text: string
 	}
 	return most === 0 ? '…' : `${text.slice(0, most).trimEnd()}…${end}`;
 }
+
+/** A text in no more lines than `most`, broken between words; what the last one has no room for is left out as `fit` does. */
+export function folded(text: string, room: number, font: Font, most: number, width: (text: string, font: Font) => number = widthOf): string[] {
+	const words = text.split(' ');
+	const lines: string[] = [];
+	while (words.length > 0) {
+		let line = words.shift() ?? '';
+		const last = lines.length === most - 1;
+		while (words.length > 0 && (last || width(`${line} ${words[0] ?? ''}`, font) <= room)) line += ` ${words.shift() ?? ''}`;
+		lines.push(fit(line, room, font, width));
+	}
+	return lines;
+}
