@@ -21,11 +21,11 @@ export interface Level {
 	readonly mark: number;
 }
 
-/** How much of what is to be made today is made; null where nothing is due. */
+/** How many of the orders of today are made; null where none is due. */
 export function madeLevel(figures: Figures | null): Level | null {
 	const made = figures?.made;
-	if (!made || made.count === null || made.planned === null || made.by_now === null || made.planned === 0) return null;
-	return { part: made.count / made.planned, mark: made.by_now / made.planned };
+	if (!made || made.planned === null || made.by_now === null || made.planned === 0) return null;
+	return { part: made.by_order / made.planned, mark: made.by_now / made.planned };
 }
 
 /** How long this product takes beside how long they do, of which a quarter more still has room. */
@@ -89,4 +89,9 @@ export function worked(figures: Figures | null, now: number): Worked {
 		times: next ? texts.nextShift(title(next), clockText(next.begins, now)) : null,
 		figure: figure || null
 	};
+}
+
+/** How many are made: of the orders that are due today, or else all, for an order or freely. */
+export function madeText(made: Figures['made'], texts: { today: (n: number) => string; byOrder: (n: number, planned: number) => string }): string {
+	return made.planned === null ? texts.today(made.count ?? 0) : texts.byOrder(made.by_order, made.planned);
 }

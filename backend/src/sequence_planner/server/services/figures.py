@@ -35,9 +35,9 @@ class ProductInWork(AnswerModel):
 class MadeToday(AnswerModel):
     """How many products were completed today.
 
-    Of `planned` ones, with those whose orders are due today or are late; `by_now` are due by now. Both are null where
-    no order is due. `count` is null where nobody knows, as the model does not tell when a product is done. `by_order`
-    were made for orders, and `to_make` are the orders that may start and are not over.
+    `by_order` of them were made for orders, of `planned` ones with the orders that are due today or are late; `by_now`
+    of these are due by now. Both are null where no order is due. `count` is null where nobody knows, as the model does
+    not tell when a product is done. `to_make` are the orders that may start and are not over.
     """
 
     count: int | None
@@ -175,7 +175,7 @@ def _made(
     to_do = [each.due for each in still_open if each.due is not None and each.due < tonight]
     if count is None or (not to_do and not any(each < tonight for each in done)):
         return MadeToday(count=count, planned=None, by_now=None, by_order=by_order, to_make=to_make)
-    planned = count + len(to_do)
+    planned = by_order + len(to_do)
     later = sum(each > now for each in (*done, *to_do))
     return MadeToday(count=count, planned=planned, by_now=planned - later, by_order=by_order, to_make=to_make)
 
