@@ -116,6 +116,16 @@ def test_an_acknowledgement_that_is_repeated_changes_nothing() -> None:
 def test_of_a_notice_nobody_has_to_take_note() -> None:
     on = Scene()
     assert on.look(cause("a", Priority.LOW))["a"].state is AlarmState.ACKNOWLEDGED
+
+
+def test_who_has_looked_at_a_notice_is_told_until_it_says_something_else() -> None:
+    on = Scene()
+    notice = cause("a", Priority.LOW)
+    on.lives.acknowledge("a", on.look(notice)["a"].since, "Eva")
+    seen = on.look(notice)["a"]
+    assert (seen.state, seen.by) == (AlarmState.ACKNOWLEDGED, "Eva")
+    assert on.told == [("a", "came"), ("a", "acknowledged")]
+    assert on.look(replace(notice, text=as_it_was("a is wrong again")))["a"].by is None
     assert on.look() == {}
 
 

@@ -38,9 +38,14 @@ export function lastingAlarms({ alarms }: Pick<StationView, 'alarms'>): Keyed[] 
 	return byUrgency(alarms).filter(([, alarm]) => alarm.ended === null && alarm.priority !== 'low');
 }
 
-/** The alarms of what has changed without a command, as where somebody moved it: what is believed may be true no more. */
+/** The alarms of what has changed without a command, as where somebody moved it. */
 export function movedByHand({ alarms }: Pick<StationView, 'alarms'>): Keyed[] {
 	return byUrgency(alarms).filter(([, { kind, ended }]) => kind === 'by-hand' && ended === null);
+}
+
+/** Those of them at which nobody has looked: what is believed may be true no more. */
+export function notLookedAt(view: Pick<StationView, 'alarms'>): Keyed[] {
+	return movedByHand(view).filter(([, { by }]) => by === null);
 }
 
 /** All reasons for which a person is wanted; none while the station works by itself. */

@@ -36,6 +36,9 @@ test('what was moved by hand is named where it happened, and the state is not ta
 	expect(said.understand).toContain('All devices stand still.');
 	expect(said.state).toBe('Look whether what the station believes is still true. The tool dock has changed without a command.');
 	expect(doneSteps(held, 'on')).toEqual({ understand: true, state: false, ways: true, on: false });
+	const looked = view({ mode: 'hold', alarms: { 'by-hand:dock': { ...moved, by: 'Eva' } } });
+	expect(doneSteps(looked, 'on').state).toBe(true);
+	expect(stepWords({ view: looked, next: 'continue', step: 'on', advice: null, now: 0 }).understand).toContain('The tool dock has changed');
 	const over = view({ mode: 'hold', alarms: { 'by-hand:dock': { ...moved, ended: 990 } } });
 	expect(doneSteps(over, 'on').state).toBe(true);
 });

@@ -1,4 +1,5 @@
 /** How the four steps stand: which are done, and a sentence for each. */
+import type { Keyed } from '#lib/alarm/priority.ts';
 import type { AdviceAnswer, StationView } from '#lib/contract.ts';
 import { runs } from '#lib/resource/running.ts';
 import { told, wordsOf } from '#lib/text/message.ts';
@@ -13,7 +14,7 @@ import { correctedText } from './happened.ts';
 import { actsTo } from './mode-acts.ts';
 import { STEPS, type Next, type Step } from './next.ts';
 import { goesOn } from './offer.ts';
-import { isUnsure, lastingAlarms, movedByHand } from './shown.ts';
+import { isUnsure, lastingAlarms, movedByHand, notLookedAt } from './shown.ts';
 import { resourceTitle } from './titles.ts';
 
 /** Those that lie behind, or in which nothing is to be done; what happened is understood as soon as something else comes next. */
@@ -21,7 +22,7 @@ export function doneSteps(view: StationView, step: Step | null): Record<Step, bo
 	const at = step === null ? STEPS.length : STEPS.indexOf(step);
 	return {
 		understand: at > 0,
-		state: at > 0 && isTrue(view) && movedByHand(view).length === 0,
+		state: at > 0 && isTrue(view) && notLookedAt(view).length === 0,
 		ways: at > STEPS.indexOf('ways'),
 		on: at > STEPS.indexOf('on')
 	};
@@ -59,7 +60,7 @@ function happened(view: StationView): string {
 	const [first] = lastingAlarms(view);
 	const moving = Object.values(view.abilities).filter(runs).map(({ resource }) => resourceTitle(view, resource));
 	const said = [first ? ended(firstOf(wordsOf(first[1]).text)) : modeMeaning(view)];
-	const moved = movedText(view);
+	const moved = movedText(movedByHand(view));
 	if (moved !== null) said.push(moved);
 	if (moving.length > 0) said.push(texts.moving([...new Set(moving)].join(', ')));
 	if (view.silent.length > 0) said.push(texts.unheard(listed(view.silent), view.silent.length));
@@ -67,8 +68,7 @@ function happened(view: StationView): string {
 }
 
 /** What was moved by hand, as its alarms say; null where nothing was. */
-function movedText(view: StationView): string | null {
-	const moved = movedByHand(view);
+function movedText(moved: readonly Keyed[]): string | null {
 	return moved.length === 0 ? null : moved.map(([, alarm]) => ended(firstOf(wordsOf(alarm).text))).join(' ');
 }
 
@@ -84,7 +84,7 @@ function state(view: StationView, now: number): string {
 	if (outputs > 0) return texts.outputs(outputs);
 	if (questions > 0) return texts.questions(questions);
 	if (view.unconfirmed) return texts.confirm;
-	const moved = movedText(view);
+	const moved = movedText(notLookedAt(view));
 	if (moved !== null) return `${texts.afterHand} ${moved}`;
 	const said = view.last_correction;
 	return said?.undoable ? texts.said(said.by, clockText(said.at, now), correctedText(view, said)) : agreeText(view);

@@ -6,7 +6,7 @@ from collections import deque
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
 
-from sequence_planner.controller.alarms.alarm import Alarm, Suppression, most_urgent, urgency
+from sequence_planner.controller.alarms.alarm import Alarm, Suppression, most_urgent, needs_acknowledgement, urgency
 from sequence_planner.controller.alarms.kinds import Cause
 from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.views.station import AlarmView, Priority
@@ -192,14 +192,14 @@ class AlarmRegistry:
         self._arrivals.forget(moment.monotonic)
 
     def acknowledge(self, key: str, since: float, by: str) -> None:
-        """A person has seen the alarm that came then."""
+        """A person has seen the alarm that came then; of a notice that nobody has to, somebody has looked at it."""
         life = self._find(key)
         if life.aside is not None:
             state = message(f"alarm-state.{life.state}")
             raise CommandRefused("alarm-set-aside", message("refused.alarm-set-aside.state", state=state))
         if life.since != since:
             raise CommandRefused("alarm-recurred", message("refused.alarm-recurred.look"))
-        if not life.acknowledged:
+        if life.by is None:
             life.acknowledge(by)
             self._tell(key, life, "acknowledged")
             self._drop_if_over(key, life)
@@ -261,6 +261,8 @@ class AlarmRegistry:
         is_worse = urgency(cause.priority) > urgency(life.worst)
         if cause.phase != life.cause.phase:
             life.since = moment.epoch
+        if not needs_acknowledgement(cause) and cause.text != life.cause.text:
+            life.by = None  # nobody has looked at what it tells now
         was_part, life.part, life.cause = life.part, False, cause
         if life.away is not None:
             self._arrivals.note(key, moment.monotonic)

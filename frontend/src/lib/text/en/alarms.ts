@@ -9,6 +9,7 @@ export const alarms = {
 		unacknowledged: 'not acknowledged',
 		returned: 'not acknowledged',
 		acknowledged: 'acknowledged',
+		notice: 'notice',
 		shelved: 'shelved',
 		'out-of-service': 'out of service'
 	},
@@ -39,7 +40,7 @@ export const alarms = {
 	},
 	which: 'Which alarms',
 	emptyAbout: 'As soon as something is wrong, it stands here, with what to do about it.',
-	sections: { fresh: 'Not acknowledged', seen: 'Acknowledged', over: 'Over, today' },
+	sections: { fresh: 'Not acknowledged', seen: 'Acknowledged', notices: 'Notices', over: 'Over, today' },
 	detail: {
 		label: 'The alarm that is chosen',
 		happened: 'What happened',

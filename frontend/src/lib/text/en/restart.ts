@@ -117,6 +117,7 @@ export const restart = {
 	},
 
 	believed: {
+		looked: 'I have looked',
 		title: 'Believed and measured',
 		besides: 'Something else',
 		agree: 'The state fits every measurement.',

@@ -9,6 +9,7 @@ export const alarms: Text['alarms'] = {
 		unacknowledged: 'inte kvitterat',
 		returned: 'inte kvitterat',
 		acknowledged: 'kvitterat',
+		notice: 'meddelande',
 		shelved: 'lagt åt sidan',
 		'out-of-service': 'ur drift'
 	},
@@ -39,7 +40,7 @@ export const alarms: Text['alarms'] = {
 	},
 	which: 'Vilka larm',
 	emptyAbout: 'Så snart något är fel står det här, med vad som ska göras åt det.',
-	sections: { fresh: 'Inte kvitterade', seen: 'Kvitterade', over: 'Över, i dag' },
+	sections: { fresh: 'Inte kvitterade', seen: 'Kvitterade', notices: 'Meddelanden', over: 'Över, i dag' },
 	detail: {
 		label: 'Det larm som är valt',
 		happened: 'Vad som hände',

@@ -113,6 +113,7 @@ export const restart: Text['restart'] = {
 	},
 
 	believed: {
+		looked: 'Jag har sett efter',
 		title: 'Antaget och uppmätt',
 		besides: 'Något annat',
 		agree: 'Tillståndet stämmer med alla mätningar.',
