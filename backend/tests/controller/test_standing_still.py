@@ -66,7 +66,7 @@ def test_it_is_an_alarm_that_says_what_the_device_says() -> None:
     tick(execution, "between", 1.0)
     assert not [cause for cause in alarms.causes(Timestamp(1005.0, 5.0)) if cause.key.startswith("still:")]
     (told,) = [cause for cause in alarms.causes(Timestamp(1006.1, 6.1)) if cause.key.startswith("still:")]
-    assert "has stalled. It still reports: at == between" in str(told.text)
+    assert "does not go on. It still reports: at == between" in str(told.text)
 
 
 def test_what_is_not_heard_or_was_told_nothing_yet_is_not_waited_for() -> None:
@@ -181,7 +181,7 @@ def test_the_device_is_to_blame_that_does_not_say_what_another_one_has_brought_a
     assert still.devices(9.9) == {}
     assert still.devices(10.1) == {"gripper": {"felt"}}
     (told,) = alarms.causes(Timestamp(1010.1, 10.1))
-    assert told.text == "Gripper has stalled. It still reports: not felt"
+    assert told.text == "Gripper does not go on. It still reports: not felt"
     assert (told.key, told.action, told.resources) == (
         "still:gripper",
         "See what keeps Gripper from going on.",

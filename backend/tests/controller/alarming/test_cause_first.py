@@ -53,7 +53,7 @@ def test_a_robot_that_is_stuck_is_one_alarm_of_the_robot() -> None:
     lasting = {key: alarm for key, alarm in rig.shown.items() if alarm.ended is None}
     assert lasting.keys() == {ROBOT_IS_STILL}
     alarm = lasting[ROBOT_IS_STILL]
-    assert alarm.text == "Robot UR10 has stalled. It still reports: robot.moving and robot.pose == unknown"
+    assert alarm.text == "Robot UR10 does not go on. It still reports: robot.moving and robot.pose == unknown"
     assert "“Tighten bolt pairs 1 to 3”" in alarm.consequence
     late = "The robot is not at bolt pair 3 yet. Robot UR10: “Move to bolt pair 3” has not finished within 30 s"
     assert late in alarm.parts
@@ -107,7 +107,7 @@ def test_what_outlasts_it_is_told_with_it_for_some_time() -> None:
     rig.faulty.clear(Clear())
     rig.run(3)
     (alarm,) = rig.shown.values()
-    assert alarm.text.startswith("Robot UR10 had stalled")
+    assert alarm.text.startswith("Robot UR10 did not go on")
     assert alarm.text.endswith("That is over, but something that came of it lasts")
     assert any("outside its safe states" in part for part in alarm.parts)
 
@@ -118,7 +118,7 @@ def test_once_it_is_over_it_reads_so() -> None:
     rig.faulty.clear(Clear())
     rig.run(30)
     (alarm,) = (alarm for alarm in rig.shown.values() if alarm.state is AlarmState.RETURNED)
-    assert alarm.text.startswith("Robot UR10 had stalled")
+    assert alarm.text.startswith("Robot UR10 did not go on")
     assert any(part == "Robot UR10: “Move to bolt pair 3” did not finish within 30 s" for part in alarm.parts)
     assert not any(" has not " in part for part in alarm.parts)
 

@@ -59,8 +59,14 @@ export function nowOf(symbol: MimicSymbol, view: Pictured, found: Found, languag
 	const running = found.doing.get(resource ?? '')?.running ?? [];
 	// What it last measured would read as what is wrong with it. Of what moves it is told where it is, of a person their task.
 	const isDevice = symbol.track === null && symbol.symbol !== 'person';
-	if (isDevice && alarmsOf(view.alarms, resource).some(([, { kind }]) => STUCK.has(kind))) return { text: texts.stuck, tone: 'rests' };
-	const active = running.length > 0 || (symbol.active.length > 0 && holds(symbol.active, variables) === true);
+	const moves = symbol.active.length > 0 && holds(symbol.active, variables) === true;
+	// What a Hold has called off is no longer to go on.
+	const isStuck = alarmsOf(view.alarms, resource).some(([, { kind }]) => STUCK.has(kind) && (kind !== 'overdue' || running.length > 0));
+	if (isDevice && isStuck) {
+		const does = moves ? saidOf(symbol.texts, variables, language) : '';
+		return { text: does === '' ? texts.stuck : texts.movesStuck(does), tone: 'rests' };
+	}
+	const active = running.length > 0 || moves;
 	const tone = active ? 'active' : 'rests';
 	if (symbol.track !== null) return whereNow(symbol.track, view, active, waits && running.length === 0, language);
 	if (symbol.symbol === 'person') {

@@ -1,6 +1,7 @@
 /** When a person has to do with a restart at all: as long as the station works by itself, the page does not speak of one. */
 import { byUrgency, isNew, isOver, type Keyed } from '#lib/alarm/priority.ts';
 import type { OutOfService, StationView, Value, Variable } from '#lib/contract.ts';
+import { runs } from '#lib/resource/running.ts';
 import { openQuestions } from './answers.ts';
 
 /** Why a person is wanted for a restart, the most telling first. */
@@ -46,6 +47,15 @@ export function movedByHand({ alarms }: Pick<StationView, 'alarms'>): Keyed[] {
 /** Those of them at which nobody has looked: what is believed may be true no more. */
 export function notLookedAt(view: Pick<StationView, 'alarms'>): Keyed[] {
 	return movedByHand(view).filter(([, { by }]) => by === null);
+}
+
+/** The alarms of what did not go on and was called off by a Hold, which mends nothing: it does not run any more. */
+export function haltedAlarms({ alarms, abilities, mode }: Pick<StationView, 'alarms' | 'abilities' | 'mode'>): Keyed[] {
+	if (mode !== 'hold' && mode !== 'restart') return [];
+	return byUrgency(alarms).filter(([, { kind, subject, ended }]) => {
+		const ability = abilities[subject];
+		return kind === 'overdue' && ended === null && ability !== undefined && !runs(ability);
+	});
 }
 
 /** All reasons for which a person is wanted; none while the station works by itself. */

@@ -3,6 +3,7 @@ import { alarm, view } from '#lib/testing/view.ts';
 import { en } from '#lib/text/en.ts';
 import { sv } from '#lib/text/sv.ts';
 import { sayActs } from './act-words.ts';
+import { haltedAlarms } from './shown.ts';
 import { doneSteps, stepWords } from './step-words.ts';
 
 test('all that a button does is said on it, as one sentence', () => {
@@ -41,4 +42,15 @@ test('what was moved by hand is named where it happened, and the state is not ta
 	expect(stepWords({ view: looked, next: 'continue', step: 'on', advice: null, now: 0 }).understand).toContain('The tool dock has changed');
 	const over = view({ mode: 'hold', alarms: { 'by-hand:dock': { ...moved, ended: 990 } } });
 	expect(doneSteps(over, 'on').state).toBe(true);
+});
+
+test('what a Hold has called off is to be seen to before the station goes on', () => {
+	const stands = { resource: 'nutrunner', title: 'Run', human: false, restart: false, moves: true, enabled: true, executing: false, finished: false, running_since: null };
+	const late = alarm({ kind: 'overdue', subject: 'run', priority: 'medium', action: 'Look at its display. Then switch it on.', messages: undefined });
+	const held = view({ mode: 'hold', alarms: { 'overdue:run': late }, abilities: { run: stands } });
+	expect(haltedAlarms(held)).toHaveLength(1);
+	expect(doneSteps(held, 'on').ways).toBe(false);
+	expect(stepWords({ view: held, next: 'continue', step: 'on', advice: null, now: 0 }).ways).toBe('Before you go on: Look at its display.');
+	expect(doneSteps({ ...held, alarms: { 'overdue:run': { ...late, state: 'acknowledged', by: 'Eva' } } }, 'on').ways).toBe(true);
+	expect(haltedAlarms({ ...held, mode: 'automatic' })).toEqual([]);
 });

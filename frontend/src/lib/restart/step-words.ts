@@ -1,5 +1,5 @@
 /** How the four steps stand: which are done, and a sentence for each. */
-import type { Keyed } from '#lib/alarm/priority.ts';
+import { isNew, type Keyed } from '#lib/alarm/priority.ts';
 import type { AdviceAnswer, StationView } from '#lib/contract.ts';
 import { runs } from '#lib/resource/running.ts';
 import { told, wordsOf } from '#lib/text/message.ts';
@@ -14,7 +14,7 @@ import { correctedText } from './happened.ts';
 import { actsTo } from './mode-acts.ts';
 import { STEPS, type Next, type Step } from './next.ts';
 import { goesOn } from './offer.ts';
-import { isUnsure, lastingAlarms, movedByHand, notLookedAt } from './shown.ts';
+import { haltedAlarms, isUnsure, lastingAlarms, movedByHand, notLookedAt } from './shown.ts';
 import { resourceTitle } from './titles.ts';
 
 /** Those that lie behind, or in which nothing is to be done; what happened is understood as soon as something else comes next. */
@@ -23,7 +23,7 @@ export function doneSteps(view: StationView, step: Step | null): Record<Step, bo
 	return {
 		understand: at > 0,
 		state: at > 0 && isTrue(view) && notLookedAt(view).length === 0,
-		ways: at > STEPS.indexOf('ways'),
+		ways: at > STEPS.indexOf('ways') && !haltedAlarms(view).some(([, alarm]) => isNew(alarm)),
 		on: at > STEPS.indexOf('on')
 	};
 }
@@ -104,6 +104,8 @@ function ways(view: StationView, advice: AdviceAnswer | null, now: number): stri
 	const last = view.last_errand;
 	if (view.errand) return texts.runs(told(view.errand.title_message, view.errand.title));
 	const found = advice !== null && advice.revision === view.revision ? advice.offers : null;
+	const first = haltedAlarms(view).find(([, alarm]) => isNew(alarm));
+	if (first) return `${texts.beforeGoingOn} ${ended(firstOf(wordsOf(first[1]).action))}`;
 	if (found?.[0] && goesOn(found[0])) return last?.done && now - last.ended < LATELY ? texts.taken(told(last.title_message, last.title), clockText(last.ended, now)) : texts.nothing;
 	if (!isTrue(view)) return texts.afterwards;
 	if (found === null) return say().restart.ways.looking;

@@ -48,7 +48,7 @@ describe('a message', () => {
 		const dock = { words: { en: 'Tool dock', sv: 'Verktygsdockan' } };
 		expect(tell({ id: 'silent.nothing', arguments: { resource: nutrunner } }, SV)).toBe('Inget hörs från mutterdragaren');
 		expect(tell({ id: 'silent.nothing', arguments: { resource: vehicle } }, SV)).toBe('Inget hörs från AGV:n');
-		expect(tell({ id: 'still.stalled', arguments: { resource: nutrunner, values: 'a' } }, SV)).toMatch(/^Mutterdragaren har kört fast/);
+		expect(tell({ id: 'still.stalled', arguments: { resource: nutrunner, values: 'a' } }, SV)).toMatch(/^Mutterdragaren kommer inte vidare/);
 		const several = { id: 'many-silent.some', arguments: { resources: [nutrunner, vehicle, dock], count: 3, of: 8 } };
 		expect(tell(several, SV)).toBe('Mutterdragaren, AGV:n och verktygsdockan svarar inte (3 av 8 enheter)');
 		expect(tell(several, EN)).toBe('Nutrunner, AGV and Tool dock are not responding (3 of 8 devices)');

@@ -6,7 +6,7 @@ import re
 from collections.abc import Collection, Iterator
 from typing import Final
 
-from sequence_planner.automaton.automaton import Ability
+from sequence_planner.automaton.automaton import Ability, target
 from sequence_planner.automaton.dependencies import is_along
 from sequence_planner.automaton.lifting.sentences import sentences_of
 from sequence_planner.controller.alarms.consequences import Consequences
@@ -17,11 +17,11 @@ from sequence_planner.controller.views.station import AbilityView
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.events import TickOutcome
 from sequence_planner.execution.executor import Executor
-from sequence_planner.execution.timeouts import in_the_past, overdue
-from sequence_planner.execution.vocabulary import ServiceKind
+from sequence_planner.execution.timeouts import Late, in_the_past, overdue
+from sequence_planner.execution.vocabulary import Mode, ServiceKind
 from sequence_planner.language.shorthand.titles import Words
-from sequence_planner.language.syntax import variables
-from sequence_planner.texts.message import Argument, Wording, as_it_was, message
+from sequence_planner.language.syntax import Constant, variables
+from sequence_planner.texts.message import Argument, Message, Wording, as_it_was, message
 
 _IN_BRACES: Final = re.compile(r"\{([^{}]*)\}")
 
@@ -40,11 +40,16 @@ class Abilities:
             name: frozenset(feeds.resource_of(topic) for topic in topics) for name, topics in feeds.sources.items()
         }
         self._conflicts: set[tuple[str, str, str]] = set()
+        # Runs that do not go on, and those of them that a person has called off by a Hold since, which mends nothing.
+        self._overdue: dict[str, Late] = {}
+        self._halted: dict[str, Late] = {}
 
     def after_tick(self, outcome: TickOutcome, moment: Timestamp) -> None:
         """After a tick: a conflict is gone in the next one, and what came of it lasts until one of the two goes on."""
         gone_on = {*outcome.finished, *outcome.started}
         self._conflicts = {c for c in self._conflicts if gone_on.isdisjoint(c[:2])} | set(outcome.conflicts)
+        for name in (*outcome.ended, *outcome.called_off):
+            self._overdue.pop(name, None)
 
     def view_part(self, moment: Timestamp) -> dict[str, object]:
         """Its part of the view."""
@@ -72,6 +77,7 @@ class Abilities:
     def causes(self, moment: Timestamp) -> Iterator[Cause]:
         """The causes of alarms that there are now."""
         yield from self._late(moment.monotonic)
+        yield from self._late_and_halted()
         yield from self._standing_still(moment.monotonic)
         yield from self._given_up()
         yield from self._called_off()
@@ -80,33 +86,105 @@ class Abilities:
     def _late(self, monotonic: float) -> Iterator[Cause]:
         """Abilities that take longer than they may; those that are planned anew then are called off instead."""
         automaton = self._execution.automaton
+        self._follow(monotonic)
         for step in self._execution.plan.order.running:
             ability = automaton.abilities[step.ability]
             late = overdue(step, ability, monotonic)
             if late is None or (ability.timeouts.replan and self._execution.conduct.executes_operations):
                 continue
-            resource = automaton.resources[ability.resource]
             others = self._failures(self._still.keeping(ability, monotonic))
-            what = "late.finished" if late.begun else "late.begun"
-            run = {"resource": resource, "ability": ability.title}
-            told = message("late.run", **run, late=message(what, seconds=late.within))
+            told = self._run(ability, late, "late.finished" if late.begun else "late.begun")
             words = self._with_values(ability.late.not_finished if late.begun else ability.late.not_begun)
-            yield OVERDUE.cause(
-                ability.name,
-                {
-                    "what": told if words is None else message("late.named", words=words, run=told),
-                    "what_past": message("late.run", **run, late=message(f"{what}-past", seconds=late.within)),
-                    "consequence": self._consequences.waiting_for(ability.resource),
-                    "action": message("late.check", resources=[resource])
-                    if late.begun
-                    else message("late.check-receives", resource=resource),
-                },
+            yield self._late_cause(
+                ability,
+                late,
+                told if words is None else message("late.named", words=words, run=told),
+                self._consequences.waiting_for(ability.resource),
+                self._check(ability, late),
                 follows=(*self._silences(ability), STILL.key(ability.resource), *others),
-                resources=[ability.resource],
-                of=frozenset({ability.resource}),
                 waits=not self._still.has_to_act(ability),
-                phase=what,
             )
+
+    def _follow(self, monotonic: float) -> None:
+        """Note which runs do not go on, and which of these a person has called off."""
+        running = {step.ability: step for step in self._execution.plan.order.running}
+        halts = self._execution.conduct.mode in (Mode.HOLD, Mode.RESTART)
+        halted = {**self._halted, **self._overdue} if halts else {}
+        self._halted = {name: late for name, late in halted.items() if name not in running}
+        still = self._still.devices(monotonic)
+        self._overdue = {}
+        for name, step in running.items():
+            ability = self._execution.automaton.abilities[name]
+            late = overdue(step, ability, monotonic)
+            if late is None and ability.resource in still and step.started is not None:
+                begun = self._execution.state[ability.flag("executing")] is True
+                late = Late(begun, round(monotonic - step.started.monotonic))
+            if late is not None and ability.human is None:
+                self._overdue[name] = late
+
+    def _late_and_halted(self) -> Iterator[Cause]:
+        """Runs that were late when a person called them off: it is not known that what kept them is mended."""
+        for name, late in self._halted.items():
+            ability = self._execution.automaton.abilities[name]
+            yield self._late_cause(
+                ability,
+                late,
+                self._run(ability, late, "late.finished-halted" if late.begun else "late.begun-halted"),
+                message("late.again"),
+                self._by_hand(ability, late) or self._check(ability, late),
+                follows=self._silences(ability),
+            )
+
+    def _run(self, ability: Ability, late: Late, what: str) -> Message:
+        resource = self._execution.automaton.resources[ability.resource]
+        return message("late.run", resource=resource, ability=ability.title, late=message(what, seconds=late.within))
+
+    def _check(self, ability: Ability, late: Late) -> Message:
+        resource = self._execution.automaton.resources[ability.resource]
+        if late.begun:
+            return message("late.check", resources=[resource])
+        return message("late.check-receives", resource=resource)
+
+    def _by_hand(self, ability: Ability, late: Late) -> Wording | None:
+        """What a person does so that what devices did not do is so, in the words of the model; None without any."""
+        automaton = self._execution.automaton
+        own = automaton.reactions.get(ability.name, ())
+        kind = "executing" if late.begun else "starting"
+        for effect in automaton.effects:
+            for action in effect.actions if effect.name in own and effect.kind == kind else ():
+                if not isinstance(action.value, Constant):
+                    continue
+                how = sentences_of(automaton).tell_by_hand(target(action), action.value.value)
+                if how is not None:
+                    return how
+        return None
+
+    def _late_cause(
+        self,
+        ability: Ability,
+        late: Late,
+        what: Message,
+        consequence: Argument,
+        action: Argument,
+        *,
+        follows: tuple[str, ...],
+        waits: bool = False,
+    ) -> Cause:
+        phase = "late.finished" if late.begun else "late.begun"
+        return OVERDUE.cause(
+            ability.name,
+            {
+                "what": what,
+                "what_past": self._run(ability, late, f"{phase}-past"),
+                "consequence": consequence,
+                "action": action,
+            },
+            follows=follows,
+            resources=[ability.resource],
+            of=frozenset({ability.resource}),
+            waits=waits,
+            phase=phase,
+        )
 
     def _with_values(self, text: Words) -> Wording | None:
         """A text of the model with what the values of the variables in it are called; None without one, and while a

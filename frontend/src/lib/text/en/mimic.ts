@@ -25,6 +25,8 @@ export const mimic = {
 	standsWaiting: 'waits',
 	/** Of a device with an alarm that it does not do what it should. */
 	stuck: 'Does not go on',
+	/** Of one that moves all the same: nobody must take it for one that stands still. */
+	movesStuck: (does: string): string => `${does}, does not go on`,
 	between: 'Between two places',
 	notHeard: 'Not heard',
 	rests: 'Nothing runs',

@@ -69,6 +69,8 @@ export const restart = {
 		afterwards: 'The ways follow from it.',
 		taken: (title: string, at: string): string => `${title}, done at ${at}.`,
 		runs: (title: string): string => `${title} is carried out.`,
+		/** Before what a person sees to. */
+		beforeGoingOn: 'Before you go on:',
 		works: 'Then production goes on by itself.',
 		notLive: 'Not known until the station is heard again.',
 		to: (number: number, title: string): string => `To step ${number}: ${title}`,
@@ -94,8 +96,15 @@ export const restart = {
 		lasting: (duration: string): string => `for ${duration}`,
 		over: (at: string): string => `over since ${at}, not acknowledged`
 	},
+	/** What a person sees to before the station goes on. */
+	first: {
+		title: 'Before you go on',
+		done: 'Done',
+		by: (who: string): string => `${who} has seen to it`
+	},
 	moves: {
 		title: 'What has not finished',
+		clear: 'It may move at any moment: keep clear.',
 		nothing: 'Nothing is running.',
 		since: (duration: string): string => `for ${duration}`,
 		person: 'a person does it'

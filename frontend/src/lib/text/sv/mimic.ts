@@ -21,6 +21,7 @@ export const mimic = {
 	last: (said: string, stop: string): string => `${said}, senast: ${stop}`,
 	standsWaiting: 'väntar',
 	stuck: 'Kommer inte vidare',
+	movesStuck: (does: string): string => `${does}, kommer inte vidare`,
 	between: 'Mellan två platser',
 	notHeard: 'Hörs inte',
 	rests: 'Inget körs',

@@ -66,6 +66,7 @@ export const restart: Text['restart'] = {
 		afterwards: 'Vägarna följer av det.',
 		taken: (title, at) => `${title}, klart ${at}.`,
 		runs: (title) => `${title} utförs.`,
+		beforeGoingOn: 'Innan ni fortsätter:',
 		works: 'Sedan fortsätter produktionen av sig själv.',
 		notLive: 'Inte känt förrän stationen hörs igen.',
 		to: (number, title) => `Till steg ${number}: ${title}`,
@@ -91,7 +92,13 @@ export const restart: Text['restart'] = {
 		lasting: (duration) => `i ${duration}`,
 		over: (at) => `över sedan ${at}, inte kvitterat`
 	},
+	first: {
+		title: 'Innan ni fortsätter',
+		done: 'Gjort',
+		by: (who) => `${who} har sett till det`
+	},
 	moves: {
+		clear: 'Den kan röra sig när som helst: håll avstånd.',
 		title: 'Vad som inte är klart',
 		nothing: 'Inget pågår.',
 		since: (duration) => `i ${duration}`,
