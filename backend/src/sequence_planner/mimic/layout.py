@@ -103,14 +103,14 @@ class _Line:
         return any(_longest(each, self.titles[each]) * _LETTER > self.rooms[each] for each in named)
 
     @property
-    def at(self) -> float:
+    def line_at(self) -> float:
         """How far below the top of the band the line is: of two lines is what is written below what moves."""
         return _LINE + (_TEXT if self.hub is not None and self._folds([self.hub]) else 0.0)
 
     @property
     def leaves_at(self) -> float:
         """How far below the top of the band the branches end."""
-        return self.at + _LEAF - _LINE
+        return self.line_at + _LEAF - _LINE
 
     @property
     def height(self) -> float:
@@ -289,7 +289,7 @@ class _Layout:
             _stop(
                 stop,
                 line.titles[stop],
-                (line.places[stop], top + (line.at if stop in line.main else line.leaves_at)),
+                (line.places[stop], top + (line.line_at if stop in line.main else line.leaves_at)),
                 "none" if stop in line.hidden else "above" if stop in line.main else "below",
                 line.rooms[stop],
                 branch=stop not in line.main,

@@ -1,4 +1,4 @@
-"""A Hold calls off what is late, and mends nothing: until the station goes on it stays told, with what a person does."""
+"""A Hold calls off what is late and mends nothing: it stays told until the station goes on, with what a person does."""
 
 from __future__ import annotations
 
