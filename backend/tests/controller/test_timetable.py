@@ -10,6 +10,7 @@ from controller.test_local_formulas import beginning
 from controller.test_receding_horizon import asked, ticks
 from sequence_planner.automaton.automaton import Automaton, HumanTask, Timeouts
 from sequence_planner.automaton.compiled_tick import CompiledRun
+from sequence_planner.automaton.tick import synchronise
 from sequence_planner.controller.views.wording import plan_preview
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.core.immutable import replace
@@ -19,7 +20,7 @@ from sequence_planner.execution.forecast import Forecast, waiting_for_people
 from sequence_planner.execution.outlook import Outlook, simulate_plan
 from sequence_planner.execution.plan_tracker import PlanCursor
 from sequence_planner.execution.vocabulary import Mode
-from sequence_planner.language.types import EnumerationType, Value
+from sequence_planner.language.types import BOOLEAN, EnumerationType, Value
 from sequence_planner.planning.problem import Plan, PlanAnswer, PlanTick, Verdict
 from support.automata import Does, automaton
 
@@ -83,7 +84,9 @@ def test_steps_follow_one_another_as_the_plan_orders_them() -> None:
 
 def test_a_plan_that_nobody_follows_yet_is_shown_with_the_same_times() -> None:
     station = replace(SLOW, effects=tuple(replace(each, resource="station") for each in SLOW.effects))
-    preview = plan_preview(station, Plan(TICKS, False, False))
+    preview = plan_preview(
+        station, Plan(TICKS, False, False), synchronise(station, {**station.initial_valuation, **AT_REST})
+    )
     assert {step.ability: (step.start, step.end) for step in preview.steps} == {
         "aside": (0, 3),
         "onwards": (3, 6),
@@ -94,8 +97,39 @@ def test_a_plan_that_nobody_follows_yet_is_shown_with_the_same_times() -> None:
 def test_a_start_that_no_effect_follows_takes_as_long_as_the_model_says() -> None:
     said = replace(SLOW.abilities["away"], duration=(1.0, 2.0))
     station = replace(SLOW, abilities={**SLOW.abilities, "away": said})
-    [step] = plan_preview(station, Plan(ticks(("", "away")), False, False)).steps
+    there = synchronise(station, {**station.initial_valuation, "at": "there", "target": "there"})
+    [step] = plan_preview(station, Plan(ticks(("", "away")), False, False), there).steps
     assert (step.start, step.end) == (0, 1.5)
+
+
+def test_what_may_start_at_once_is_shown_so_whatever_else_is_under_way() -> None:
+    """By the plan both come after what a person does, as each of its ticks waits for all that is expected in it."""
+    two = automaton(
+        {
+            "place": Does(
+                start=("asked := true",),
+                enabled="not asked",
+                executing="asked and not placed",
+                finish="asked and placed",
+            ),
+            "turn": Does(start=("on := true",), enabled="not on", executing="turns", finish="on and turns"),
+            "go": Does(start=("target := there",), enabled="turns", executing="at != target", finish="at == there"),
+        },
+        measured={"at": (PLACES, "here"), "placed": (BOOLEAN, False), "turns": (BOOLEAN, False)},
+        output={"asked": (BOOLEAN, True), "on": (BOOLEAN, False), "target": (PLACES, "here")},
+        effects={
+            "places": ("asked and not placed", ("placed := true",)),
+            "turning": ("on and not turns", ("turns := true",)),
+            "goes": ("at != target", ("at := target",)),
+        },
+        goals={"come": "at == there and placed"},
+    )
+    seconds = {"places": 20.0, "turning": 0.5, "goes": 4.0}
+    effects = tuple(replace(each, shortest=seconds[each.name], longest=seconds[each.name]) for each in two.effects)
+    station = replace(two, effects=effects)
+    plan = Plan(ticks(("places", "turn"), ("turning", "go"), ("goes", "")), False, False)
+    preview = plan_preview(station, plan, synchronise(station, station.initial_valuation))
+    assert [(step.ability, step.start) for step in preview.steps] == [("turn", 0), ("go", 0.5)]
 
 
 def test_nothing_moves_on_while_nothing_happens() -> None:

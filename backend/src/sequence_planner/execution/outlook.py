@@ -17,7 +17,7 @@ from sequence_planner.core.immutable import Immutable
 from sequence_planner.execution.plan_tracker import PlanCursor
 from sequence_planner.language.syntax import Assignment, Expression
 from sequence_planner.planning.problem import Plan, PlanTick
-from sequence_planner.planning.recovery.proposals import expected_seconds
+from sequence_planner.planning.recovery.timing import expected_seconds
 
 # What a step, by its number, has changed.
 Change = tuple[int, Collection[str]]

@@ -102,6 +102,7 @@ class Abilities:
                 self._consequences.waiting_for(ability.resource),
                 self._check(ability, late),
                 follows=(*self._silences(ability), STILL.key(ability.resource), *others),
+                of=frozenset({ability.resource}),
                 waits=not self._still.has_to_act(ability),
             )
 
@@ -168,6 +169,7 @@ class Abilities:
         action: Argument,
         *,
         follows: tuple[str, ...],
+        of: frozenset[str] = frozenset(),
         waits: bool = False,
     ) -> Cause:
         phase = "late.finished" if late.begun else "late.begun"
@@ -181,7 +183,7 @@ class Abilities:
             },
             follows=follows,
             resources=[ability.resource],
-            of=frozenset({ability.resource}),
+            of=of,
             waits=waits,
             phase=phase,
         )

@@ -141,7 +141,7 @@ class Corrections:
             return _why(message("preview.refused", title=refused.title, detail=refused.detail))
         if answer.plan is None:
             return {**_why(_WHY_NONE[answer.verdict]), "left_out": list(answer.left_out)}
-        preview = plan_preview(self._execution.automaton, answer.plan)
+        preview = plan_preview(self._execution.automaton, answer.plan, state)
         return {"plan": preview, "goals": list(answer.goals), "left_out": list(answer.left_out)}
 
     def _goals(self, active: frozenset[str]) -> tuple[Goal, ...]:

@@ -166,7 +166,7 @@ class WhyNot:
         except CommandRefused as refused:
             return _more(view, message("blocked.unknown", why=refused.detail))
         if aimed.offer is not None and aimed.offer.operator_plan is not None:
-            plan = plan_preview(execution.automaton, aimed.offer.operator_plan)
+            plan = plan_preview(execution.automaton, aimed.offer.operator_plan, aimed.offer.start)
             return _more(view, message("blocked.reached", starts=len(plan.steps)), plan=plan)
         if aimed.proven:
             answers = execution.conduct.answers

@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from types import MappingProxyType
 from typing import Final
 
-from sequence_planner.automaton.automaton import Ability, Automaton
+from sequence_planner.automaton.automaton import Ability, Automaton, State
 from sequence_planner.automaton.dependencies import is_along, tasks_for
 from sequence_planner.automaton.lifting.sentences import sentences_of
 from sequence_planner.controller.commands.command import CommandRefused, TextPlace
@@ -36,8 +36,8 @@ from sequence_planner.planning.recovery.proposals import (
     OfferKind,
     RecoveryProposal,
     ValueChange,
-    estimated_times,
 )
+from sequence_planner.planning.recovery.timing import estimated_times
 from sequence_planner.texts.message import Argument, Item, Message, Sentence, as_it_was, message
 
 # Offers in the words of the people they are shown to.
@@ -58,7 +58,7 @@ def offer_view(
         in_service=list(offer.in_service),
         assumed=_changes(automaton, offer.assumed),
         corrections=_changes(automaton, offer.corrections, _tasks(automaton, offer)),
-        errand=None if offer.operator_plan is None else plan_preview(automaton, offer.operator_plan),
+        errand=None if offer.operator_plan is None else plan_preview(automaton, offer.operator_plan, offer.start),
         ends=None if offer.operator_plan is None else end_text(offer.goal, offer.into_safe),
         ends_message=None if offer.operator_plan is None else end_message(automaton, offer.goal, offer.into_safe),
         into_safe=offer.into_safe,
@@ -67,7 +67,7 @@ def offer_view(
         unsupervised=offer.unsupervised,
         at_rest=offer.at_rest,
         breaks=[SpecificationView(name=name, title=automaton.specifications[name].title) for name in offer.breaks],
-        then=None if offer.then is None else plan_preview(automaton, offer.then),
+        then=None if offer.then is None else plan_preview(automaton, offer.then, offer.end),
         goals=list(offer.goals),
         left_out=list(offer.left_out),
         claims=list(offer.claims),
@@ -217,12 +217,13 @@ def _so(automaton: Automaton, changes: Iterable[ValueChange]) -> list[Message]:
     ]
 
 
-def plan_preview(automaton: Automaton, plan: Plan) -> PlanPreviewView:
-    """A plan as it is shown before anybody follows it."""
-    times = estimated_times(automaton, plan)
+def plan_preview(automaton: Automaton, plan: Plan, state: State) -> PlanPreviewView:
+    """A plan as it is shown before anybody follows it, from `state`; what may start first stands first."""
+    times = estimated_times(automaton, plan, state)
+    steps = [_step(automaton, tick, name, times[index]) for index, (tick, name) in enumerate(plan.starts)]
     return PlanPreviewView(
         ticks=len(plan.ticks),
-        steps=[_step(automaton, tick, name, times[index]) for index, (tick, name) in enumerate(plan.starts)],
+        steps=sorted(steps, key=lambda step: step.start),
         minimal_ticks=plan.minimal_ticks,
         minimal_starts=plan.minimal_starts,
     )

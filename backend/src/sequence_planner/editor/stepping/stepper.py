@@ -38,7 +38,7 @@ from sequence_planner.planning.problem import (
     Verdict,
     goals_of,
 )
-from sequence_planner.planning.recovery.proposals import expected_seconds
+from sequence_planner.planning.recovery.timing import expected_seconds
 from sequence_planner.process.budget import Budget
 from sequence_planner.texts.message import Message, message
 

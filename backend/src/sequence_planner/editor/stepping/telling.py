@@ -22,7 +22,7 @@ from sequence_planner.language.printer import print_expression
 from sequence_planner.language.syntax import conjunction
 from sequence_planner.language.types import Value
 from sequence_planner.planning.problem import PlanAnswer
-from sequence_planner.planning.recovery.proposals import expected_seconds
+from sequence_planner.planning.recovery.timing import expected_seconds
 from sequence_planner.texts.message import Item, Message, message
 
 MOST_KEPT_BACK = 300

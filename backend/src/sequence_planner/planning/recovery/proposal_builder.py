@@ -19,10 +19,10 @@ from sequence_planner.planning.recovery.proposals import (
     ValueChange,
     changes_between,
     claimed,
-    expected_seconds,
 )
 from sequence_planner.planning.recovery.prover import Prover
 from sequence_planner.planning.recovery.request import RecoverySituation
+from sequence_planner.planning.recovery.timing import expected_seconds
 
 
 class Making:
@@ -81,6 +81,7 @@ class Making:
         )
         return RecoveryProposal(
             kind=kind,
+            start=changed,
             end=end.state,
             effort=effort,
             corrections=corrections,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from enum import StrEnum
 from functools import lru_cache
-from itertools import accumulate, combinations
+from itertools import combinations
 
 from sequence_planner.automaton.automaton import Automaton, Effect, Flag, Kind, Operation, State, target
 from sequence_planner.automaton.dependencies import tasks_for
@@ -25,7 +25,7 @@ from sequence_planner.language.syntax import (
 from sequence_planner.language.types import Value, contains
 from sequence_planner.planning.diagnosis import Diagnosis
 from sequence_planner.planning.goals.pursuit import Goals
-from sequence_planner.planning.problem import Plan, PlanTick
+from sequence_planner.planning.problem import Plan
 from sequence_planner.planning.recovery.request import Pairing, RecoverySituation
 from sequence_planner.planning.sat.flag_dependencies import FollowingFlags
 from sequence_planner.planning.validation.replay import missing
@@ -140,20 +140,22 @@ class ProposalEffort(Immutable):
 class RecoveryProposal(Immutable):
     """A proven way back to work.
 
-    First a person makes the `corrections` of estimates, brings the `physical` changes of measured variables about, and
-    brings resources `online` and abilities `in_service`; of those resources it is `assumed` that they say what they
-    last said. Then `operator_plan` is carried out in restart mode, by written guards alone as long as the state is
-    outside the safe states if it is `unsupervised`, until its `goal` holds; `end` is the state then. From there `then`
-    is a plan without restart abilities for `goals`; it is None only where that was not proven for a manual plan that
-    was asked for. `breaks` are specifications that the manual plan violates on its way although they were not violated
-    before; `at_rest` says that it ends in one of the station's safe rest states, with devices that are where they were
-    told to be. The corrections alone would have the goals that it `claims` reached, or nearer: that is for somebody to
-    say who has checked it. What is done at devices can be what abilities wait for; what these note then it `records`.
-    One `into_safe` begins outside the safe states, and is not at its end before it is inside. What is corrected of
-    `by_hand` is so only once a person has done the task for it.
+    First a person makes the `corrections` of estimates, brings the `physical` changes of measured variables about,
+    and brings resources `online` and abilities `in_service`; of those resources it is `assumed` that they say what
+    they last said; that is how it is at the `start`. Then `operator_plan` is carried out in restart mode, by
+    written guards alone as long as the state is outside the safe states if it is `unsupervised`, until its `goal`
+    holds; `end` is the state then. From there `then` is a plan without restart abilities for `goals`; it is None
+    only where that was not proven for a manual plan that was asked for. `breaks` are specifications that the manual
+    plan violates on its way although they were not violated before; `at_rest` says that it ends in one of the
+    station's safe rest states, with devices that are where they were told to be. The corrections alone would have
+    the goals that it `claims` reached, or nearer: that is for somebody to say who has checked it. What is done at
+    devices can be what abilities wait for; what these note then it `records`. One `into_safe` begins outside the
+    safe states, and is not at its end before it is inside. What is corrected of `by_hand` is so only once a person
+    has done the task for it.
     """
 
     kind: OfferKind
+    start: State
     end: State
     effort: ProposalEffort
     corrections: tuple[ValueChange, ...] = ()
@@ -203,36 +205,6 @@ class Advice(Immutable):
     reasons: Diagnosis | None
     complete: bool
     seconds: float
-
-
-def expected_seconds(automaton: Automaton, ticks: Iterable[PlanTick]) -> float:
-    """Estimate how long a plan takes when each device needs the middle of the time its effects are declared with."""
-    takes = {effect.name: (effect.shortest + effect.longest) / 2 for effect in automaton.effects}
-    return sum(max((takes[name] for name in tick.effects), default=0.0) for tick in ticks)
-
-
-def estimated_times(automaton: Automaton, plan: Plan) -> list[tuple[float, float]]:
-    """Estimate when each start of a plan comes and when it is over, in seconds after the plan begins.
-
-    It is over with the last effect of its resource before that is started again, or else as long as the model says: so
-    also where the plan ends before it does.
-    """
-    resources = {effect.name: effect.resource for effect in automaton.effects}
-    comes = [*accumulate(expected_seconds(automaton, [tick]) for tick in plan.ticks)]
-    acts = [{resources[name] for name in tick.effects} for tick in plan.ticks]
-    times = list[tuple[float, float]]()
-    for index, (tick, name) in enumerate(plan.starts):
-        ability, start = automaton.abilities[name], comes[tick - 1]
-        later = (at for at, each in plan.starts[index + 1 :] if automaton.abilities[each].resource == ability.resource)
-        again = next(later, None)
-        until = len(plan.ticks) if again is None else again
-        ends = [comes[at] for at in range(tick, until) if ability.resource in acts[at]]
-        lasts = 0.0 if ability.duration is None else sum(ability.duration) / 2
-        if ends and again is not None:
-            times.append((start, ends[-1]))
-        else:
-            times.append((start, max([*ends, start + lasts])))
-    return times
 
 
 def changes_between(automaton: Automaton, before: State, after: State, kind: Kind) -> tuple[ValueChange, ...]:
