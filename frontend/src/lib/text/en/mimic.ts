@@ -38,6 +38,7 @@ export const mimic = {
 	undrawn: (n: number): string => (n === 1 ? '1 thing of mimic.yaml is not drawn' : `${n} things of mimic.yaml are not drawn`),
 	place: (file: string, line: number, column: number): string => `${file}, line ${line}, column ${column}`,
 	thing: {
+		correct: 'Correct…',
 		out: 'out of service',
 		awaits: 'Awaits',
 		notConfirmed: 'not confirmed',

@@ -33,6 +33,7 @@ export const mimic = {
 	undrawn: (n: number): string => (n === 1 ? '1 sak i mimic.yaml ritas inte' : `${n} saker i mimic.yaml ritas inte`),
 	place: (file: string, line: number, column: number): string => `${file}, rad ${line}, kolumn ${column}`,
 	thing: {
+		correct: 'Rätta…',
 		out: 'ur drift',
 		awaits: 'Inväntar',
 		notConfirmed: 'inte bekräftat',
