@@ -277,13 +277,12 @@ class Options:
 
     def _corrections(self, state: State, fixed: frozenset[str], answered: frozenset[str]) -> Iterator[Act]:
         for name in self._automaton.names(Kind.ESTIMATED):
-            if name not in fixed:
-                for value in self._others(state, name):
+            for value in self._others(state, name) if name not in fixed or name in answered else ():
+                # What people do they do, and then it is so, as where they see that it is done.
+                if (name, value) in self._tasks:
+                    yield Act(ActKind.TASK, name, ((name, value),), _EXPECTED if name in answered else _ESTIMATED)
+                elif name not in fixed:
                     yield Act(ActKind.ESTIMATE, name, ((name, value),), _ESTIMATED)
-            elif name in answered:
-                for value in self._others(state, name):
-                    if (name, value) in self._tasks:
-                        yield Act(ActKind.TASK, name, ((name, value),), _EXPECTED)
 
     def _physical(self, here: RecoverySituation, fixed: frozenset[str]) -> Iterator[Act]:
         """For each value of a measured variable what effects would do with it too, and then that alone."""
