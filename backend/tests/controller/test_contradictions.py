@@ -82,7 +82,7 @@ def test_a_bolt_that_is_asked_for_is_not_there_yet() -> None:
     wrong = {**state, "operator.requested_pair": "bolt_pair_2", "bolts[bolt_pair_2]": "placed"}
     said = contradictions(automaton, found, wrong)
     assert said.because == (
-        "Never true together: “bolts[bolt_pair_2] == placed” and “operator.requested_pair == bolt_pair_2”",
+        "“bolts[bolt_pair_2] == placed” does not fit what is measured: operator.requested_pair == bolt_pair_2",
     )
     [question] = questions(automaton, said, wrong)
     assert (question.variable, question.believed, question.possible) == ("bolts[bolt_pair_2]", "placed", ["empty"])

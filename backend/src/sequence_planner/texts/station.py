@@ -283,7 +283,7 @@ STATION: Final[dict[str, str]] = {
     "offer.safe": "the station is back in its safe states",
     "offer.try": "Try: {ability}",
     # Beliefs that do not fit, and outputs that came back.
-    "belief.never": "Never true together: “{believed}” and “{measured}”",
+    "belief.never": "“{believed}” does not fit what is measured: {measured}",
     "reacts.may": "{resource} may react: {variables} unknown",
     "reacts.does": "{resource} reacts: {changes}",
     "reacts.changes": "{variable} changes",

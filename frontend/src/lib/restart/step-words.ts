@@ -18,14 +18,20 @@ import { haltedAlarms, isUnsure, lastingAlarms, movedByHand, notLookedAt } from 
 import { resourceTitle } from './titles.ts';
 
 /** Those that lie behind, or in which nothing is to be done; what happened is understood as soon as something else comes next. */
-export function doneSteps(view: StationView, step: Step | null): Record<Step, boolean> {
+export function doneSteps(view: StationView, step: Step | null, advice: AdviceAnswer | null = null): Record<Step, boolean> {
 	const at = step === null ? STEPS.length : STEPS.indexOf(step);
 	return {
 		understand: at > 0,
 		state: at > 0 && isTrue(view) && notLookedAt(view).length === 0,
-		ways: at > STEPS.indexOf('ways') && !haltedAlarms(view).some(([, alarm]) => isNew(alarm)),
+		ways: at > STEPS.indexOf('ways') && !leavesOut(view, advice) && !haltedAlarms(view).some(([, alarm]) => isNew(alarm)),
 		on: at > STEPS.indexOf('on')
 	};
+}
+
+/** Whether the station would go on without an operation that is to be carried out, as no plan leads to it. */
+function leavesOut(view: StationView, advice: AdviceAnswer | null): boolean {
+	const first = advice?.revision === view.revision ? advice.offers[0] : undefined;
+	return first !== undefined && goesOn(first) && first.left_out.length > 0;
 }
 
 /** Nothing is asked of a person about what is so, and it is known whether the station is safe. */
@@ -106,7 +112,10 @@ function ways(view: StationView, advice: AdviceAnswer | null, now: number): stri
 	const found = advice !== null && advice.revision === view.revision ? advice.offers : null;
 	const first = haltedAlarms(view).find(([, alarm]) => isNew(alarm));
 	if (first) return `${texts.beforeGoingOn} ${ended(firstOf(wordsOf(first[1]).action))}`;
-	if (found?.[0] && goesOn(found[0])) return last?.done && now - last.ended < LATELY ? texts.taken(told(last.title_message, last.title), clockText(last.ended, now)) : texts.nothing;
+	if (found?.[0] && goesOn(found[0]) && found[0].left_out.length > 0) return texts.leftOut(found[0].left_out.length);
+	// What was carried out for a stop before this one is not told again.
+	const isLast = last?.done === true && now - last.ended < LATELY && !view.plan.steps.some(({ started }) => started !== null && started > last.ended);
+	if (found?.[0] && goesOn(found[0])) return last && isLast ? texts.taken(told(last.title_message, last.title), clockText(last.ended, now)) : texts.nothing;
 	if (!isTrue(view)) return texts.afterwards;
 	if (found === null) return say().restart.ways.looking;
 	const { offered, checked } = waysOf(advice, view);

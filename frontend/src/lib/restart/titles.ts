@@ -10,3 +10,8 @@ export function operationTitles(view: Known, names: readonly string[]): string[]
 export function resourceTitle(view: Known, name: string): string {
 	return view?.resources[name]?.title ?? name;
 }
+
+/** The title of an ability as the page calls it; what is called otherwise where there is none of that name keeps `title`. */
+export function abilityTitle(view: StationView | null, name: string, title: string): string {
+	return view?.abilities[name]?.title ?? title;
+}

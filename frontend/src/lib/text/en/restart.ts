@@ -66,6 +66,7 @@ export const restart = {
 		none: 'No way is known yet.',
 		checked: (n: number): string => `${count(n, 'way', 'ways')}, only if you have checked.`,
 		nothing: 'Nothing has to be carried out.',
+		leftOut: (n: number): string => `${count(n, 'operation', 'operations')} to which no plan leads from here.`,
 		afterwards: 'The ways follow from it.',
 		taken: (title: string, at: string): string => `${title}, done at ${at}.`,
 		runs: (title: string): string => `${title} is carried out.`,
@@ -334,6 +335,9 @@ export const restart = {
 	},
 
 	acts: {
+		first: 'First',
+		/** To which no plan leads. */
+		leftOut: (titles: string): string => `No plan leads to this from here: ${titles}. The station goes on without, and stands when nothing else is to be done.`,
 		/** What one does, to be said after another: take control, leave restart mode and continue. */
 		words: {
 			control: 'take control',

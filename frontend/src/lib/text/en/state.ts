@@ -242,6 +242,7 @@ export const state = {
 		plan: 'The plan then, in automatic mode',
 		steps: (n: number): string => `Step by step: ${count(n, 'start', 'starts')}`,
 		noStarts: 'Nothing has to be started.',
+		noWay: 'No plan leads on from there: the station would stand.',
 		leftOut: (title: string): string => `“${title}” is left out of the plan.`,
 		itself: 'Nothing starts by a correction.',
 		word: 'Correct',

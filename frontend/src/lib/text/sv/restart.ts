@@ -63,6 +63,7 @@ export const restart: Text['restart'] = {
 		checked: (n) => `${count(n, 'väg', 'vägar')}, bara om du har kontrollerat.`,
 		none: 'Ingen väg är känd ännu.',
 		nothing: 'Inget behöver utföras.',
+		leftOut: (n) => `${count(n, 'operation', 'operationer')} som ingen plan leder till härifrån.`,
 		afterwards: 'Vägarna följer av det.',
 		taken: (title, at) => `${title}, klart ${at}.`,
 		runs: (title) => `${title} utförs.`,
@@ -320,6 +321,8 @@ export const restart: Text['restart'] = {
 	},
 
 	acts: {
+		first: 'Först',
+		leftOut: (titles) => `Ingen plan leder dit härifrån: ${titles}. Stationen fortsätter utan, och står när inget annat ska göras.`,
 		words: {
 			control: 'ta kontrollen',
 			enter: 'gå till omstartsläge',

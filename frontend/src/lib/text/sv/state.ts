@@ -238,6 +238,7 @@ export const state: Text['state'] = {
 		plan: 'Planen sedan, i automatiskt läge',
 		steps: (n) => `Steg för steg: ${antal(n, 'start', 'starter')}`,
 		noStarts: 'Inget behöver startas.',
+		noWay: 'Ingen plan leder vidare därifrån: stationen skulle stå.',
 		leftOut: (title) => `”${title}” är inte med i planen.`,
 		itself: 'En rättelse startar inget av sig själv.',
 		word: 'Rätta',
