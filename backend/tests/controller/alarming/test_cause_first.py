@@ -71,12 +71,12 @@ def test_why_the_state_is_unsafe_is_told_as_soon_as_it_can_be_known() -> None:
 
 def test_the_watch_can_say_which_device_needs_help() -> None:
     rig = stuck()
-    assert failing(rig.station.automaton, rig.shown) == []
+    assert failing(rig.station.automaton, rig.shown, rig.execution.running()) == []
     rig.run(60)
-    assert failing(rig.station.automaton, rig.shown) == ["Robot UR10"]
+    assert failing(rig.station.automaton, rig.shown, rig.execution.running()) == ["Robot UR10"]
     rig.faulty.clear(Clear())
     rig.run(15)
-    assert failing(rig.station.automaton, rig.shown) == []
+    assert failing(rig.station.automaton, rig.shown, rig.execution.running()) == []
 
 
 def test_what_the_station_asks_about_because_of_it_is_a_part_of_it() -> None:

@@ -2,13 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
+import pytest
+
 from controller.alarming.test_cause_first import Watched
+from sequence_planner.controller.views.execution import failing
 from sequence_planner.controller.views.station import AlarmState
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.vocabulary import Mode
 from sequence_planner.simulation.faults import Clear, Fault, FaultKind
+from support.simulated import ready
 
 LATE = "overdue:nutrunner.run_nut"
+
+
+@pytest.fixture(autouse=True)
+def _planner_of_its_own() -> Iterator[None]:
+    """What is planned for here is remembered by the planner, which others of this process share."""
+    ready.cache_clear()
+    yield
+    ready.cache_clear()
 
 
 def stuck_and_held() -> Watched:
@@ -24,10 +38,12 @@ def stuck_and_held() -> Watched:
 
 
 def test_it_stays_told_with_what_a_person_does() -> None:
-    alarm = stuck_and_held().shown[LATE]
+    rig = stuck_and_held()
+    alarm = rig.shown[LATE]
     assert (alarm.state, alarm.ended) == (AlarmState.UNACKNOWLEDGED, None)
     assert alarm.text == "Nutrunner: “Run the nutrunner” did not begin within 5 s, until it was called off"
     assert alarm.action.startswith("Get the nutrunner to turn.")
+    assert failing(rig.station.automaton, rig.shown, rig.execution.running()) == [], "it stands still, as it should"
     assert alarm.consequence == "It can come again as soon as the station goes on."
 
 

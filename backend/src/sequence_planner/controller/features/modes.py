@@ -76,7 +76,8 @@ class Modes:
     def view_part(self, moment: Timestamp) -> dict[str, object]:
         """Its part of the view."""
         execution, silent = self._execution, self._links.silent
-        commands, fail = self._devices.network.commands, failing(execution.automaton, self._alarms.shown)
+        commands = self._devices.network.commands
+        fail = failing(execution.automaton, self._alarms.shown, execution.running())
         return {
             "mode": execution.mode,
             "packml": self.packml,

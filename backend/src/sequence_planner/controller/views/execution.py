@@ -52,9 +52,10 @@ _STANDING = {
 _FAILURES = frozenset({"overdue", "still", "given-up"})
 
 
-def failing(automaton: Automaton, alarms: Mapping[str, AlarmView]) -> list[str]:
-    """Return what the resources are called that do not do what they should, as `alarms` say; people are none of
-    them.
+def failing(automaton: Automaton, alarms: Mapping[str, AlarmView], running: Collection[str]) -> list[str]:
+    """Return what the resources are called that do not do what they should, as `alarms` say; people are none of them.
+
+    Of the abilities that are late those that are `running`: what a person has called off has nothing to do.
     """
     found: set[str] = set()
     for key, alarm in alarms.items():
@@ -64,7 +65,7 @@ def failing(automaton: Automaton, alarms: Mapping[str, AlarmView]) -> list[str]:
             continue
         if ability is None:
             found.add(name)
-        elif ability.human is None:
+        elif ability.human is None and name in running:
             found.add(ability.resource)
     return [title for name, title in automaton.resources.items() if name in found]
 
