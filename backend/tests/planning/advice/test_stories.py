@@ -11,7 +11,7 @@ import pytest
 from sequence_planner.automaton.automaton import Automaton, Kind, State
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.tick import initial_state, synchronise
-from sequence_planner.controller.views.wording import offer_title
+from sequence_planner.controller.views.wording import offer_title, told
 from sequence_planner.core.immutable import replace
 from sequence_planner.language.printer import print_expression
 from sequence_planner.language.syntax import FALSE
@@ -297,3 +297,11 @@ def test_advice_on_which_work_begins_late_takes_less_than_it_might(station: Auto
         assert not advisor.advise(replace(hopeless, until=until)).offers
     in_time, late, latest = given
     assert in_time > 60.0 >= late > 40.0 >= latest > 0.0
+
+
+def test_what_one_act_of_a_device_brings_about_is_said_once(station: Automaton) -> None:
+    """That the tool is not idle comes with that it turns, for which the model says what a person does."""
+    turns = ValueChange("nutrunner.tool_is_running_forward", False, True)
+    idle = ValueChange("nutrunner.tool_is_idle", True, False)
+    assert told(station, [idle, turns]) == [turns]
+    assert told(station, [idle]) == [idle]

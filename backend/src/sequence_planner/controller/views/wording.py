@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from types import MappingProxyType
 from typing import Final
 
-from sequence_planner.automaton.automaton import Ability, Automaton, State
+from sequence_planner.automaton.automaton import Ability, Automaton, State, target
 from sequence_planner.automaton.dependencies import is_along, tasks_for
 from sequence_planner.automaton.lifting.sentences import sentences_of
 from sequence_planner.controller.commands.command import CommandRefused, TextPlace
@@ -22,7 +22,7 @@ from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import Mode, Production
 from sequence_planner.language.names.suggestions import suggestion
 from sequence_planner.language.printer import print_expression, print_value
-from sequence_planner.language.syntax import TRUE, Expression, ExpressionError
+from sequence_planner.language.syntax import TRUE, Constant, Expression, ExpressionError
 from sequence_planner.planning.diagnosis import (
     Diagnosis,
     Member,
@@ -190,7 +190,19 @@ def _by_people(automaton: Automaton, offer: RecoveryProposal) -> Iterator[Messag
 def told(automaton: Automaton, changes: Iterable[ValueChange]) -> list[ValueChange]:
     """The changes that somebody brings about; the others come along with these."""
     every = list(changes)
-    return [each for each in every if not is_along(automaton, each.name, _as_new(each, every))]
+    by_themselves = [each for each in every if not is_along(automaton, each.name, _as_new(each, every))]
+    called = [each for each in by_themselves if sentences_of(automaton).tell_by_hand(each.name, each.new) is not None]
+    return [each for each in by_themselves if each in called or not _comes_with_any(automaton, each, called)]
+
+
+def _comes_with_any(automaton: Automaton, change: ValueChange, others: Collection[ValueChange]) -> bool:
+    """Return whether one act of a device brings the change about together with one of the others."""
+    for effect in automaton.effects:
+        written = {target(each): each.value for each in effect.actions}
+        brings = {name: value.value for name, value in written.items() if isinstance(value, Constant)}
+        if brings.get(change.name) == change.new and any(brings.get(each.name) == each.new for each in others):
+            return True
+    return False
 
 
 def _as_new(change: ValueChange, changes: Iterable[ValueChange]) -> list[str]:
