@@ -49,3 +49,8 @@ test('the station as it was has nothing of what is so now', () => {
 	expect([then.alarms, then.tasks, then.resources['robot']?.online]).toEqual([{}, {}, true]);
 	expect(now.variables['bolts']?.value, 'the present stays as it is').toBe('placed');
 });
+
+test('what stood then is seen, and what stands now is not', () => {
+	const then = pastView(now, past, { b: alarm({ text: 'The robot stands still' }) });
+	expect(Object.keys(then.alarms)).toEqual(['b']);
+});

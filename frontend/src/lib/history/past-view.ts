@@ -1,11 +1,11 @@
 /** The station as it was, as a document that a picture is drawn of. */
-import type { Past, StationView } from '#lib/contract.ts';
+import type { Alarm, Past, StationView } from '#lib/contract.ts';
 
 /**
- * `view`, with what is known of a moment of the past instead of what is so now. Of alarms, tasks and what was heard nothing is
- * known of that moment; a variable that the past does not have is unknown.
+ * `view`, with what is known of a moment of the past instead of what is so now, and with the alarms that stood then. Of tasks
+ * and what was heard nothing is known of that moment; a variable that the past does not have is unknown.
  */
-export function pastView(view: StationView, past: Past): StationView {
+export function pastView(view: StationView, past: Past, alarms: Readonly<Record<string, Alarm>> = {}): StationView {
 	const running = new Set(past.running);
 	const active = new Set(past.active);
 	const each = <From, To>(all: Readonly<Record<string, From>>, of: (one: From, name: string) => To): Record<string, To> =>
@@ -22,7 +22,7 @@ export function pastView(view: StationView, past: Past): StationView {
 		abilities: each(view.abilities, (one, name) => ({ ...one, executing: running.has(name), enabled: null, running_since: null })),
 		operations: each(view.operations, (one, name) => ({ ...one, active: active.has(name) })),
 		resources: each(view.resources, (one) => ({ ...one, online: true, awaited_topics: [] })),
-		alarms: {},
+		alarms,
 		tasks: {}
 	};
 }

@@ -195,7 +195,8 @@ export const history = {
 			done: 'done',
 			running: 'running',
 			next: 'next',
-			planned: 'planned'
+			planned: 'planned',
+			calledOff: 'called off'
 		},
 		changed: 'changed here',
 		same: 'as then',

@@ -195,7 +195,8 @@ export const history: Text['history'] = {
 			done: 'klart',
 			running: 'pågick',
 			next: 'näst',
-			planned: 'planerat'
+			planned: 'planerat',
+			calledOff: 'avbrutet'
 		},
 		changed: 'ändrades här',
 		same: 'som då',
