@@ -244,12 +244,12 @@ export interface Placed<B extends Bar = Bar> {
  * Bars that last at the same time one below the other; each takes `least` seconds of its row. What has stopped or has not
  * ended has its words rather than what has.
  */
-export function placed<B extends Bar>(bars: readonly B[], least = 0): { readonly rows: number; readonly all: readonly Placed<B>[] } {
+export function placed<B extends Bar>(bars: readonly B[], least = 0, most = MOST_ROWS): { readonly rows: number; readonly all: readonly Placed<B>[] } {
 	const rows: { end: number; last: { bar: B; row: number; crowded: boolean } }[] = [];
 	const all: { bar: B; row: number; crowded: boolean }[] = [];
 	for (const bar of [...bars].sort((a, b) => a.from - b.from)) {
 		const free = rows.findIndex(({ end }) => end <= bar.from);
-		const place = { bar, row: free >= 0 ? free : Math.min(rows.length, MOST_ROWS - 1), crowded: free < 0 && rows.length === MOST_ROWS };
+		const place = { bar, row: free >= 0 ? free : Math.min(rows.length, most - 1), crowded: free < 0 && rows.length === most };
 		const yielding = place.crowded && lasts(bar) ? rows.findLastIndex(({ last }) => !lasts(last.bar)) : -1;
 		const other = rows[yielding];
 		if (other) {
