@@ -12,6 +12,7 @@ from sequence_planner.controller.views.jobs import job_views
 from sequence_planner.controller.views.station import StepStatus
 from sequence_planner.controller.views.wording import reason_text
 from sequence_planner.execution.executor import Executor
+from sequence_planner.execution.outlook import simulate_plan
 from sequence_planner.execution.plan_tracker import PlannedStart
 from sequence_planner.execution.record.codec import HistoryError
 from sequence_planner.execution.record.replay import Replayed, replay
@@ -109,26 +110,26 @@ def past_view(execution: Executor, called_off: CalledOff = ()) -> PastView:
 
 def _plan(execution: Executor, called_off: CalledOff) -> PastPlanView:
     order = execution.plan.order
+    outlook = simulate_plan(order, execution.simulated(), execution.automaton)
+    serving = {name: outlook.steps_for(name) for name in sorted(execution.active)}
+
+    def shown(step: PlannedStart, status: StepStatus) -> PastStepView:
+        return PastStepView(
+            ability=step.ability,
+            title=execution.automaton.abilities[step.ability].title,
+            status=status,
+            tick=step.tick,
+            started=None if step.started is None else step.started.epoch,
+            ended=None if step.ended is None else step.ended.epoch,
+            called_off=step.ended is not None and (step.ability, step.ended.epoch) in called_off,
+            operations=[] if step.ended else [name for name, steps in serving.items() if step.number in steps],
+        )
+
     past = [
-        _step(execution, each, StepStatus.DONE if each.ended else StepStatus.RUNNING, called_off)
+        shown(each, StepStatus.DONE if each.ended else StepStatus.RUNNING)
         for each in order.past
         if each.ended is None or each.number >= order.first
     ]
-    ahead = [
-        _step(execution, each, StepStatus.PLANNED if index else StepStatus.NEXT, called_off)
-        for index, each in enumerate(order.ahead)
-    ]
+    ahead = [shown(each, StepStatus.PLANNED if index else StepStatus.NEXT) for index, each in enumerate(order.ahead)]
     reason = reason_text(execution.plan.reason)
     return PastPlanView(status=execution.plan.status, reason=reason, reason_message=reason, steps=past + ahead)
-
-
-def _step(execution: Executor, step: PlannedStart, status: StepStatus, called_off: CalledOff) -> PastStepView:
-    return PastStepView(
-        ability=step.ability,
-        title=execution.automaton.abilities[step.ability].title,
-        status=status,
-        tick=step.tick,
-        started=None if step.started is None else step.started.epoch,
-        ended=None if step.ended is None else step.ended.epoch,
-        called_off=step.ended is not None and (step.ability, step.ended.epoch) in called_off,
-    )

@@ -83,7 +83,9 @@ class LineView(View):
 
 
 class PastStepView(View):
-    """A start of the plan as it was then; with `called_off` it ended as it was called off."""
+    """A start of the plan as it was then; with `called_off` it ended as it was called off. `operations` are the active
+    ones that it serves, while it runs or is ahead.
+    """
 
     ability: str
     title: str
@@ -92,6 +94,7 @@ class PastStepView(View):
     started: float | None
     ended: float | None
     called_off: bool
+    operations: list[str]
 
 
 class PastPlanView(View):
