@@ -226,7 +226,9 @@ def test_a_plan_of_the_past_has_its_own_starts_and_says_which_were_called_off() 
     assert [each.ability for each in after if each.called_off] == ["nutrunner.run_nut"]
     assert [each.ability for each in before if each.status is StepStatus.RUNNING] == ["nutrunner.run_nut"]
     assert not any(each.called_off for each in before)
-    assert [each.operations for each in before if each.status is StepStatus.RUNNING] == [["tighten_bolt_pair(bolt_pair_1)"]]
+    assert [each.operations for each in before if each.status is StepStatus.RUNNING] == [
+        ["tighten_bolt_pair(bolt_pair_1)"]
+    ]
 
 
 def test_an_ability_that_only_does_something_at_its_start_is_over_with_it(past: Worked) -> None:

@@ -98,3 +98,27 @@ def test_the_alarms_of_a_moment_are_those_that_stood_as_they_were_told_last(data
     }
     assert line is not None
     assert "seen later" not in [each.content["alarm"] for each in line.alarms], "what is over is over, seen or not"
+
+
+def test_what_was_called_off_before_the_line_begins_does_not_run_in_it(database: Database) -> None:
+    def record(time: float, kind: str, **content: object) -> tuple[str, float, str]:
+        return kind, time, json.dumps(content)
+
+    async def write(writer: RunWriter) -> None:
+        for each in (
+            record(1, "begun", values={}, memory={"order.past": [], "active": []}, mode="automatic"),
+            record(
+                2, "ticked", started=["tool.run", "robot.move", "robot.wait", "engine.next"], at_once=["engine.next"]
+            ),
+            record(3, "mode-changed", what={"mode": "hold"}, called_off=["tool.run"]),
+            record(4, "ticked", started=["press.close"]),
+            record(5, "errand-stopped", called_off=["press.close"]),
+            record(6, "ticked", ended=["robot.wait"]),
+        ):
+            writer.write(*each)
+
+    with_writer(database, write)
+    with database.reading() as connection:
+        line = timeline.line(WholeRun(connection), 10, 30)
+    assert line is not None
+    assert line.running == ["robot.move"]

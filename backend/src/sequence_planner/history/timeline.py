@@ -21,7 +21,7 @@ from sequence_planner.controller.views.station import (
 )
 from sequence_planner.controller.views.wording import reason_text
 from sequence_planner.core.immutable import Immutable
-from sequence_planner.execution.events import Answered, Asked
+from sequence_planner.execution.events import Answered, Asked, CalledOff, ModeChanged, OperatorPlanStopped
 from sequence_planner.execution.record.codec import BEGUN, KINDS, SNAPSHOT, TICKED, kind_of
 from sequence_planner.execution.vocabulary import Mode, PlanStatus, Production
 from sequence_planner.journal.full_run import WholeRun
@@ -197,6 +197,7 @@ MOST_ALARMS: Final = 300  # records of alarms that are read to find those that s
 BINS: Final = 60
 ALARM: Final = "alarm"
 _ASKED, _ANSWERED = kind_of(Asked), kind_of(Answered)
+_ENDING: Final = (TICKED, *map(kind_of, (ModeChanged, CalledOff, OperatorPlanStopped)))  # which say what ended
 _SELDOM: Final = frozenset({*KINDS, BEGUN, ALARM, BY_HAND.name} - {TICKED, _ASKED, _ANSWERED})
 _TOLD: Final = ("started", "at_once", "ended", "called_off", "given_up", "activated", "completed", "plan", "mode")
 _TELLING: Final = tuple(f'"{part}":' for part in _TOLD)
@@ -276,7 +277,7 @@ def _under_way(run: WholeRun, number: int) -> tuple[list[str], list[str]]:
     memory = json.loads(whole.content)["memory"]
     running = {each["ability"]: None for each in memory["order.past"] if each.get("ended") is None}
     active = dict.fromkeys(memory["active"])
-    for record in run.after(whole.number, max(number - whole.number, 0), (TICKED,)):
+    for record in run.after(whole.number, max(number - whole.number, 0), _ENDING):
         if record.number > number or not any(part in record.content for part in _TELLING):
             continue
         content = json.loads(record.content)
