@@ -89,6 +89,11 @@ class Press:
         self.records.append(RunRecord(len(self.records) + 1, time, kind, content, ""))
         return len(self.records)
 
+    def called_off(self) -> list[tuple[str, list[str]]]:
+        """What the journal says was called off, each with the kind of its record."""
+        told = [(each.kind, json.loads(each.content).get("called_off")) for each in self.records]
+        return [(kind, names) for kind, names in told if names]
+
     @property
     def now(self) -> Timestamp:
         return Timestamp(1000.0 + self.seconds, self.seconds)
@@ -252,6 +257,7 @@ def test_an_overdue_run_is_called_off(press: Press) -> None:
     assert not press.execution.plan.order.running
     assert not press.execution.conduct.service
     assert not press.execution.is_due(press.now)
+    assert press.called_off() == [("ticked", ["press"])]
 
 
 def test_stopping_it_calls_it_off_where_it_says_how(press: Press) -> None:
@@ -263,6 +269,7 @@ def test_stopping_it_calls_it_off_where_it_says_how(press: Press) -> None:
     assert press.trial().why == "Adam stopped it"
     assert press.tick() == ()
     assert press.execution.published["ram"] == "up"
+    assert press.called_off() == [("errand-stopped", ["press"])]
 
 
 def test_without_cancel_actions_it_goes_on_to_its_end() -> None:

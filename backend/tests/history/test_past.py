@@ -18,6 +18,7 @@ from sqlalchemy import text
 from history.journalled import NOW, life, worked
 from sequence_planner.automaton.automaton import Kind, VariableDeclaration
 from sequence_planner.controller.restore import beginning
+from sequence_planner.controller.views.station import StepStatus
 from sequence_planner.core.actor import SYSTEM
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.core.immutable import replace
@@ -28,8 +29,10 @@ from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.record.codec import BEGUN, SNAPSHOT, HistoryError, kind_of
 from sequence_planner.execution.record.recorder import model_digest
 from sequence_planner.execution.record.replay import Player, Replayed, replay
+from sequence_planner.execution.vocabulary import Mode
 from sequence_planner.history.simulation import branch
 from sequence_planner.history.state_at import looking_back, moment_view
+from sequence_planner.history.timeline import line
 from sequence_planner.journal import run_journal
 from sequence_planner.journal.archive import ArchiveError
 from sequence_planner.journal.full_run import WholeRun
@@ -190,7 +193,7 @@ def test_every_moment_can_be_looked_at(past: Worked) -> None:
     with database.reading() as connection:
         for number in (1, 60, 101, len(found)):
             moment = looking_back(WholeRun(connection), AUTOMATON, SUPERVISOR, number)
-            shown = moment_view(moment)
+            shown = moment_view(WholeRun(connection), moment)
             assert shown.record.number == number
             content = json.loads(moment.record.content)
             for name, value in content.get("changes", {}).items():
@@ -198,6 +201,47 @@ def test_every_moment_can_be_looked_at(past: Worked) -> None:
         assert moment.now.epoch <= NOW.epoch + 31
         with pytest.raises(HistoryError, match="no record"):
             looking_back(WholeRun(connection), AUTOMATON, SUPERVISOR, len(found) + 1)
+
+
+def test_a_plan_of_the_past_has_its_own_starts_and_says_which_were_called_off() -> None:
+    at = 14.0
+    held = Timestamp(NOW.epoch + at + 1, NOW.monotonic + at + 1)
+    with journal() as database:
+        execution = asyncio.run(
+            life(database, BOLT_TIGHTENING, at, then=lambda running: running.change_mode(Mode.HOLD, "Eva", held))
+        )
+        with database.reading() as connection:
+            run = WholeRun(connection)
+            number = run.at(held.epoch)
+            before, after = (
+                moment_view(run, looking_back(run, AUTOMATON, SUPERVISOR, each)).past.plan.steps
+                for each in (number - 1, number)
+            )
+    plan = execution.plan.order.plan
+    assert plan is not None
+    assert [each.ability for each in after] == [name for _, name in plan.starts], "nothing of earlier plans"
+    assert len(execution.plan.order.past) + len(execution.plan.order.ahead) > len(plan.starts), (
+        "there were earlier ones"
+    )
+    assert [each.ability for each in after if each.called_off] == ["nutrunner.run_nut"]
+    assert [each.ability for each in before if each.status is StepStatus.RUNNING] == ["nutrunner.run_nut"]
+    assert not any(each.called_off for each in before)
+    assert [each.operations for each in before if each.status is StepStatus.RUNNING] == [
+        ["tighten_bolt_pair(bolt_pair_1)"]
+    ]
+
+
+def test_an_ability_that_only_does_something_at_its_start_is_over_with_it(past: Worked) -> None:
+    database, _ = past
+    with database.reading() as connection:
+        run = WholeRun(connection)
+        contents = [json.loads(each.content) for each in run.after(0, 1000)]
+        (brought_in,) = [each for each in contents if each.get("at_once")]
+        assert brought_in["at_once"] == ["engine.next_engine"]
+        assert "engine.next_engine" in brought_in["started"]
+        seen = line(run, NOW.epoch + 29.5, NOW.epoch + 40)
+    assert seen is not None
+    assert "engine.next_engine" not in seen.running
 
 
 def test_what_was_believed_comes_back(past: Worked) -> None:

@@ -119,6 +119,11 @@ test('a link leads to a moment, and nobody is kept from it @long', async ({ oper
 	await operate.goto(`${station.url}/history?record=3`);
 	await expect(operate.getByTestId('past')).toHaveAttribute('data-record', '3');
 	await expect(operate.getByTestId('past')).toHaveAttribute('data-shown', '3', PREPARED);
+	await test.step('the picture, what it has no room for and what happened are in sight without scrolling', async () => {
+		const body = operate.getByTestId('past').locator('section > .body');
+		await expect(body.locator('svg [data-symbol]')).not.toHaveCount(0);
+		expect(await body.evaluate((element) => element.scrollHeight - element.clientHeight)).toBeLessThanOrEqual(1);
+	});
 	await examine(operate, 'history');
 });
 

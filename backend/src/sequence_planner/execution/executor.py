@@ -259,7 +259,7 @@ class ExecutorBase:
         started = self._start(now)
         self._heed_supervisor()
         self._heed_answers(started)
-        self._update_plan(now)
+        called_off += self._update_plan(now)
         # Before production is started nothing is published, and then all outputs are: no change of one is news.
         news = self.automaton.outputs if self.production is Production.STARTED else ()
         outputs = frozenset(name for name in news if self.state[name] != self.published[name])
@@ -410,25 +410,30 @@ class ExecutorBase:
         if answers != self.conduct.answers:
             self.conduct = replace(self.conduct, answers=answers)
 
-    def _update_plan(self, now: Timestamp) -> None:
-        """Notice that the plan is done with, or that the state has departed from it."""
+    def _update_plan(self, now: Timestamp) -> tuple[str, ...]:
+        """Notice that the plan is done with, or that the state has departed from it; what was called off by it."""
         if self.conduct.executes_operations:
             self.plan.update(self._present, self.active)
         elif self.operator_plan is not None and self.operator_plan.ability is not None:
-            self._check_trial(self.operator_plan.ability, now)
+            return self._check_trial(self.operator_plan.ability, now)
         elif self.operator_plan is not None and not self.blind and not self.plan.still_leads(self._present):
             self._end_operator_plan(message("ended.departed"), now)
+        return ()
 
-    def _check_trial(self, ability: str, now: Timestamp) -> None:
-        """A trial starts in the first tick after it was taken, and is over when its run is, or when that is overdue."""
+    def _check_trial(self, ability: str, now: Timestamp) -> tuple[str, ...]:
+        """A trial starts in the first tick after it was taken, and is over when its run is, or when that is overdue: it
+        is called off then.
+        """
         title, order = self.automaton.abilities[ability].title, self.plan.order
         if order.ahead:
             self._end_operator_plan(message("ended.not-startable", ability=title), now)
         elif all(step.ability != ability for step in order.running):
             self._end_operator_plan("", now, done=True)
         elif (what := self._trial_overdue(now)) is not None:
-            self._break_off(ability, now)
+            called_off = self._break_off(ability, now)
             self._end_operator_plan(message("ended.late", ability=title, late=what.words()), now)
+            return called_off
+        return ()
 
     def _trial_overdue(self, now: Timestamp) -> Late | None:
         """Say what has not come in time of the ability that is tried; None while it is in time, or nothing is tried."""
@@ -440,11 +445,16 @@ class ExecutorBase:
         )
         return next((what for what in late if what is not None), None)
 
-    def _break_off(self, ability: str, now: Timestamp) -> None:
-        """Call off a run of an ability, where it says how that is done; otherwise the run goes on to its end."""
-        if any(step.ability == ability for step in self.plan.order.running):
-            for name in self._cancel((ability,)):
-                self.plan.order.finish(name, now)
+    def _break_off(self, ability: str, now: Timestamp) -> tuple[str, ...]:
+        """Call off a run of an ability, where it says how that is done; otherwise the run goes on to its end. What was
+        called off is returned.
+        """
+        if all(step.ability != ability for step in self.plan.order.running):
+            return ()
+        called_off = self._cancel((ability,))
+        for name in called_off:
+            self.plan.order.finish(name, now)
+        return called_off
 
     def _start(self, now: Timestamp) -> tuple[str, ...]:
         """Step 5: the first abilities of the order start, as long as they may."""
@@ -693,10 +703,10 @@ class Executor(ExecutorBase):
     def stop_operator_plan(self, by: str, now: Timestamp) -> None:
         """Start no more of it. What is only tried is called off with it."""
         before, operator_plan = self.state, self.operator_plan
-        if operator_plan is not None and operator_plan.ability is not None:
-            self._break_off(operator_plan.ability, now)
+        tried = None if operator_plan is None else operator_plan.ability
+        called_off = () if tried is None else self._break_off(tried, now)
         self._end_operator_plan(message("ended.stopped", by=by), now, by=by)
-        self._emit(OperatorPlanStopped(by, now), before)
+        self._emit(OperatorPlanStopped(by, now), before, called_off=called_off)
 
     # Its jobs. They advance with the next tick.
 

@@ -115,6 +115,11 @@ class PlanCursor:
         self.requested = frozenset(requested)
         self.ahead = [self._step(ability, tick) for tick, ability in plan.starts] if plan else []
 
+    @property
+    def first(self) -> int:
+        """The number of the first step of the plan; without a plan, the number that the next step will have."""
+        return self._numbers + 1 - (len(self.plan.starts) if self.plan is not None else 0)
+
     def copy(self) -> PlanCursor:
         """One that does not change when this one does."""
         return replace(self, past=[replace(step) for step in self.past], ahead=[replace(step) for step in self.ahead])

@@ -6,11 +6,12 @@ import json
 from itertools import pairwise
 from typing import Any, Final
 
-from pydantic import JsonValue
+from pydantic import JsonValue, ValidationError
 
 from sequence_planner.controller.alarms.kinds import BY_HAND
 from sequence_planner.controller.views.part import Value, View
 from sequence_planner.controller.views.station import (
+    AlarmView,
     ForceView,
     JobView,
     OperatorPlanView,
@@ -20,7 +21,7 @@ from sequence_planner.controller.views.station import (
 )
 from sequence_planner.controller.views.wording import reason_text
 from sequence_planner.core.immutable import Immutable
-from sequence_planner.execution.events import Answered, Asked
+from sequence_planner.execution.events import Answered, Asked, CalledOff, ModeChanged, OperatorPlanStopped
 from sequence_planner.execution.record.codec import BEGUN, KINDS, SNAPSHOT, TICKED, kind_of
 from sequence_planner.execution.vocabulary import Mode, PlanStatus, Production
 from sequence_planner.journal.full_run import WholeRun
@@ -82,7 +83,9 @@ class LineView(View):
 
 
 class PastStepView(View):
-    """A start of the plan as it was then."""
+    """A start of the plan as it was then; with `called_off` it ended as it was called off. `operations` are the active
+    ones that it serves, while it runs or is ahead.
+    """
 
     ability: str
     title: str
@@ -90,10 +93,14 @@ class PastStepView(View):
     tick: int
     started: float | None
     ended: float | None
+    called_off: bool
+    operations: list[str]
 
 
 class PastPlanView(View):
-    """The plan as it was then, and why it was that or none."""
+    """The plan as it was then, and why it was that or none. `steps` are its starts, and what ran still of plans before
+    it.
+    """
 
     status: PlanStatus
     reason: str
@@ -122,10 +129,13 @@ class PastView(View):
 
 
 class MomentView(View):
-    """A record, and how the station was right after it."""
+    """A record, and how the station was right after it. `alarms` are those that stood then, by their keys, each as it
+    was told last; those that were told as part of another are not among them.
+    """
 
     record: RunRecordView
     past: PastView
+    alarms: dict[str, AlarmView]
 
 
 class BranchView(View):
@@ -187,11 +197,13 @@ MOST_ALARMS: Final = 300  # records of alarms that are read to find those that s
 BINS: Final = 60
 ALARM: Final = "alarm"
 _ASKED, _ANSWERED = kind_of(Asked), kind_of(Answered)
+_ENDING: Final = (TICKED, *map(kind_of, (ModeChanged, CalledOff, OperatorPlanStopped)))  # which say what ended
 _SELDOM: Final = frozenset({*KINDS, BEGUN, ALARM, BY_HAND.name} - {TICKED, _ASKED, _ANSWERED})
-_TOLD: Final = ("started", "ended", "called_off", "given_up", "activated", "completed", "plan", "mode")
+_TOLD: Final = ("started", "at_once", "ended", "called_off", "given_up", "activated", "completed", "plan", "mode")
 _TELLING: Final = tuple(f'"{part}":' for part in _TOLD)
 _CAME: Final = ("came", "came again")
 _OVER: Final = ("returned", "ended")
+_PART: Final = "became part of another"
 _PAGE: Final = 1000
 
 
@@ -265,13 +277,14 @@ def _under_way(run: WholeRun, number: int) -> tuple[list[str], list[str]]:
     memory = json.loads(whole.content)["memory"]
     running = {each["ability"]: None for each in memory["order.past"] if each.get("ended") is None}
     active = dict.fromkeys(memory["active"])
-    for record in run.after(whole.number, max(number - whole.number, 0), (TICKED,)):
+    for record in run.after(whole.number, max(number - whole.number, 0), _ENDING):
         if record.number > number or not any(part in record.content for part in _TELLING):
             continue
         content = json.loads(record.content)
         for name in (*content.get("ended", ()), *content.get("called_off", ())):
             running.pop(name, None)
-        running |= dict.fromkeys(content.get("started", ()))
+        at_once = content.get("at_once", ())
+        running |= dict.fromkeys(name for name in content.get("started", ()) if name not in at_once)
         for name in content.get("completed", ()):
             active.pop(name, None)
         active |= dict.fromkeys(content.get("activated", ()))
@@ -287,11 +300,32 @@ def _standing(run: WholeRun, number: int) -> list[MarkView]:
             break  # a controller that starts tells anew what stands
         mark = _mark(record)
         key, event = str(mark.content.get("alarm")), mark.content.get("event")
-        over = seen.setdefault(key, event in _OVER)
+        over = seen.setdefault(key, event in _OVER or mark.content.get("ended") is not None)
         if event in _CAME and not over:
             found.append(mark)
             seen[key] = True
     return found[::-1]
+
+
+def standing_alarms(run: WholeRun, number: int) -> dict[str, AlarmView]:
+    """Return the alarms that stood after a record, as each was told last; of very old ones nothing is known."""
+    seen: set[str] = set()
+    found: dict[str, AlarmView] = {}
+    for record in run.before(number + 1, MOST_ALARMS, (ALARM, BEGUN)):
+        if record.kind == BEGUN:
+            break
+        content = json.loads(record.content)
+        key = str(content.pop("alarm", ""))
+        if key in seen:
+            continue
+        seen.add(key)
+        if content.pop("event", "") == _PART or content.get("ended") is not None:
+            continue
+        try:
+            found[key] = AlarmView.model_validate(content)
+        except (ValidationError, LookupError):
+            continue  # another version of the program told it differently
+    return found
 
 
 def _mode(run: WholeRun, number: int) -> str | None:

@@ -18,7 +18,7 @@ from sequence_planner.core.storage_error import StorageError
 from sequence_planner.db.database import Database
 from sequence_planner.execution.record.codec import HistoryError
 from sequence_planner.history.simulation import branch
-from sequence_planner.history.state_at import looking_back, moment_view, past_view
+from sequence_planner.history.state_at import called_off, looking_back, moment_view, past_view
 from sequence_planner.history.timeline import (
     Answer,
     BranchView,
@@ -60,14 +60,14 @@ class _Room:
             run = WholeRun(connection, self._archive)
             match question:
                 case LookBack(number):
-                    return moment_view(looking_back(run, station.automaton, supervisor, number))
+                    return moment_view(run, looking_back(run, station.automaton, supervisor, number))
                 case TakeBranch(number, seconds, corrections, deadline):
                     found = branch(run, station, supervisor, number, seconds, corrections, deadline)
         return BranchView(
             seconds=found.seconds,
             records=[record_view(each) for each in found.records[:MOST_TOLD]],
             cut=len(found.records) > MOST_TOLD,
-            end=past_view(found.execution),
+            end=past_view(found.execution, called_off(found.records)),
         )
 
 

@@ -1,6 +1,6 @@
 import { describe, expect, test } from 'vitest';
 import type { Mark, TimeLine } from '#lib/contract.ts';
-import { gathered, lanesOf, nearest, placed, runsOf, type Bar, type Spot } from './lanes.ts';
+import { alarmsOf, gathered, lanesOf, nearest, placed, runsOf, type Bar, type Spot } from './lanes.ts';
 import { namesOf } from './names.ts';
 
 const names = namesOf(null);
@@ -88,6 +88,55 @@ test('what ran when its device did not go on is told from the others, with the c
 	const bars = (id: string) => lanes.find((each) => each.id === id)?.bars.map(({ failed, cause }) => [failed, cause]);
 	expect(bars('of tool')).toEqual([[true, 'The tool has stalled'], [undefined, undefined]]);
 	expect(bars('of robot')).toEqual([[undefined, undefined]]);
+});
+
+test('an alarm that comes again is as much in sight as one that came', () => {
+	const alarm = { event: 'came again', kind: 'overdue', subject: 'tool.run', text: 'The tool does not start. It rests', priority: 'medium', resources: ['tool'], parts: [] };
+	const marks = [
+		mark(11, 110, 'ticked', { started: ['tool.run'] }),
+		mark(12, 120, 'alarm', alarm),
+		mark(13, 130, 'alarm', { ...alarm, event: 'became more urgent', priority: 'high' }),
+		mark(14, 140, 'alarm', { ...alarm, event: 'acknowledged' }),
+		mark(15, 150, 'alarm', { ...alarm, event: 'returned' })
+	];
+	expect(alarmsOf(line(marks), names).map(({ alarm: priority }) => priority)).toEqual(['medium', 'high', undefined, undefined]);
+	const lanes = lanesOf(line(marks), [], { window, until: Infinity, resources: ['tool'], names: { ...names, resourceOf: () => 'tool' } });
+	expect(lanes.find(({ id }) => id === 'of tool')?.bars).toMatchObject([{ failed: true, cause: 'The tool does not start', priority: 'high' }]);
+});
+
+test('of two that run on one device each is told by its own alarm', () => {
+	const alarm = (subject: string, text: string) => ({ event: 'came', kind: 'overdue', subject, text, priority: 'medium', resources: ['tool'], parts: [] });
+	const marks = [
+		mark(11, 110, 'ticked', { started: ['tool.float'] }),
+		mark(12, 120, 'ticked', { started: ['tool.run'] }),
+		mark(13, 130, 'alarm', alarm('tool.run', 'The tool does not start')),
+		mark(14, 131, 'alarm', alarm('tool.float', 'The tool does not float'))
+	];
+	const lanes = lanesOf(line(marks), [], { window, until: Infinity, resources: ['tool'], names: { ...names, resourceOf: () => 'tool' } });
+	expect(lanes.find(({ id }) => id === 'of tool')?.bars.map(({ label, cause }) => [label, cause])).toEqual([
+		['tool.float', 'The tool does not float'],
+		['tool.run', 'The tool does not start']
+	]);
+});
+
+test('what only does something at its start is over with it', () => {
+	const marks = [
+		mark(11, 110, 'ticked', { started: ['engine.next', 'tool.run'], at_once: ['engine.next'] }),
+		mark(12, 180, 'ticked', { started: ['engine.next'], at_once: ['engine.next'] })
+	];
+	const runs = runsOf(line(marks), window, Infinity);
+	expect(runs.get('engine.next')).toMatchObject([
+		{ from: 110, to: 110, open: false },
+		{ from: 180, to: 180, open: false }
+	]);
+	expect(runs.get('tool.run')).toMatchObject([{ from: 110, to: 200, open: true }]);
+});
+
+test('what goes with a mode is told beside it: nothing lies over the names of modes', () => {
+	const marks = [mark(11, 110, 'errand-taken', { errand: { by: 'Eva', why: '' } }), mark(12, 120, 'called-off', { by: 'Eva' })];
+	const lanes = lanesOf(line(marks), [], { window, until: Infinity, resources: [], names });
+	const counts = Object.fromEntries(lanes.map(({ id, spots }) => [id, spots.length]));
+	expect(counts).toEqual({ mode: 0, operations: 0, plan: 1, people: 1 });
 });
 
 test('what did not go on is told from the others also where its alarm came before the window', () => {

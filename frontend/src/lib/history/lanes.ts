@@ -24,6 +24,8 @@ export interface Bar {
 	readonly priority?: Priority;
 	/** It is not as usual: not the mode in which the station works by itself. */
 	readonly other?: boolean;
+	/** What ran. */
+	readonly ability?: string;
 }
 
 /** Something that happened at once: a record, or an act of a person, which is found by its time. */
@@ -47,9 +49,12 @@ export interface Lane {
 	readonly spots: readonly Spot[];
 }
 
-const MODE_KINDS = new Set(['production-started', 'called-off', 'cycle-stop-changed', 'stepping-changed', 'step-taken', 'errand-taken', 'errand-stopped']);
-/** What people did by command is among their acts; this the station has noticed by itself. */
-const NOTICED = new Set(['by-hand']);
+/** What is of plans, beside their own records. */
+const PLAN_KINDS = new Set(['begun', 'errand-taken', 'errand-stopped']);
+/** What goes with the acts of people: what they are about, and what the station has noticed by itself. */
+const PEOPLE_KINDS = new Set(['production-started', 'called-off', 'cycle-stop-changed', 'stepping-changed', 'step-taken', 'by-hand']);
+/** What is told of an alarm that wants attention from then on. */
+const TELLS: ReadonlySet<unknown> = new Set(['came', 'came again', 'became more urgent', 'stands by itself']);
 const PRIORITIES: readonly unknown[] = ['high', 'medium', 'low'] satisfies Priority[];
 
 /** What is drawn, and how: `resources` have a lane each, in their order; what goes on is drawn up to `until`. */
@@ -83,16 +88,16 @@ export function lanesOf(
 	for (const [ability, bars] of runs) {
 		const of = names.resourceOf(ability);
 		const label = names.ability(ability);
-		byResource.set(of, [...(byResource.get(of) ?? []), ...bars.map((bar) => ({ ...bar, label }))]);
+		byResource.set(of, [...(byResource.get(of) ?? []), ...bars.map((bar) => ({ ...bar, label, ability }))]);
 	}
 	for (const [id, bars] of byResource) byResource.set(id, broken(bars, troublesOf(line, window, id)));
 	const operations = line.whole ? operationsOf(line, window, until) : [];
 	return [
-		{ id: 'mode', title: words.mode, bars: modesOf(line, window, until), spots: spots(MODE_KINDS) },
+		{ id: 'mode', title: words.mode, bars: modesOf(line, window, until), spots: [] },
 		{ id: 'operations', title: words.operations, bars: operations.map((bar) => ({ ...bar, label: names.operation(bar.label) })), spots: [] },
 		...[...byResource].map(([id, bars]) => ({ id: `of ${id}`, title: names.resource(id), resource: id, bars, spots: [] })),
-		{ id: 'plan', title: words.plan, bars: [], spots: [...plans, ...spots(new Set(['begun']))] },
-		{ id: 'people', title: words.people, bars: [], spots: [...acts.map((act) => actSpot(act, names)), ...spots(NOTICED), ...alarmsOf(line, names)] }
+		{ id: 'plan', title: words.plan, bars: [], spots: [...plans, ...spots(PLAN_KINDS)] },
+		{ id: 'people', title: words.people, bars: [], spots: [...acts.map((act) => actSpot(act, names)), ...spots(PEOPLE_KINDS), ...alarmsOf(line, names)] }
 	];
 }
 
@@ -103,26 +108,30 @@ interface Trouble {
 	readonly time: number;
 	readonly cause: string;
 	readonly priority: Priority;
+	/** What of the resource did not go on, where that is told. */
+	readonly ability: string | null;
 }
 
 /** When a device of a resource did not go on, and what was told of it; what stood at the beginning of the window was so then. */
 function troublesOf({ alarms, marks }: TimeLine, { from }: Window, resource: string): Trouble[] {
 	const stood = alarms.map((mark) => ({ ...mark, time: Math.max(mark.time, from) }));
-	const came = marks.filter(({ kind, content }) => kind === 'alarm' && (partOf(content, 'what') ?? content)['event'] === 'came');
+	const came = marks.filter(({ kind, content }) => kind === 'alarm' && TELLS.has((partOf(content, 'what') ?? content)['event']));
 	return [...stood, ...came].flatMap(({ time, content }) => {
 		const what = partOf(content, 'what') ?? content;
 		if (!BROKEN.has(what['kind']) || !textsOf(what['resources']).includes(resource)) return [];
 		const alarm = what as unknown as Alarm;
-		return [{ time, cause: leading(wordsOf(alarm).text)[0], priority: alarm.priority }];
+		const ability = alarm.kind === 'overdue' ? alarm.subject : null;
+		return [{ time, cause: leading(wordsOf(alarm).text)[0], priority: alarm.priority, ability }];
 	});
 }
 
-/** What ran when its device did not go on, marked so: of several at once the one that was started last. */
+/** What ran when its device did not go on, marked so: of several at once what is told of, else what was started last. */
 function broken(bars: readonly Bar[], troubles: readonly Trouble[]): Bar[] {
 	const found = new Map<Bar, Trouble>();
 	for (const trouble of troubles) {
-		const { time } = trouble;
-		const [bar] = bars.filter(({ from, to }) => from <= time && time <= to).sort((a, b) => b.from - a.from);
+		const { time, ability } = trouble;
+		const ran = bars.filter(({ from, to }) => from <= time && time <= to).sort((a, b) => b.from - a.from);
+		const bar = ran.find((each) => each.ability === ability) ?? ran[0];
 		if (bar) found.set(bar, trouble);
 	}
 	return bars.map((bar) => {
@@ -139,7 +148,7 @@ function actSpot(act: Act, names: Names): Spot {
 	return { time, label, number: null, act, refused, by: initialsOf(entry.actor.name) };
 }
 
-/** The alarms of a line; those that came have their priority. */
+/** The alarms of a line; those that came, again or more urgent, have their priority. */
 export function alarmsOf(line: Pick<TimeLine, 'marks'>, names: Names): Spot[] {
 	return line.marks
 		.filter(({ kind }) => kind === 'alarm')
@@ -148,7 +157,7 @@ export function alarmsOf(line: Pick<TimeLine, 'marks'>, names: Names): Spot[] {
 			const found = mark.content['priority'] ?? partOf(mark.content, 'what')?.['priority'];
 			const event = mark.content['event'] ?? partOf(mark.content, 'what')?.['event'];
 			const spot: Spot = { time: mark.time, label: on === '' ? what : `${what}: ${on}`, number: mark.number, act: null, refused: false };
-			return event === 'came' && PRIORITIES.includes(found) ? { ...spot, alarm: found as Priority } : spot;
+			return TELLS.has(event) && PRIORITIES.includes(found) ? { ...spot, alarm: found as Priority } : spot;
 		});
 }
 
@@ -176,6 +185,8 @@ export function runsOf(line: TimeLine, window: Window, until: number): Map<strin
 			if (open.has(ability)) close(ability, time, true);
 			open.set(ability, { from: time, number });
 		}
+		// What only does something at its start is over with it.
+		for (const ability of textsOf(content['at_once'])) if (open.has(ability)) close(ability, time, false);
 	}
 	const end = Math.min(window.to, Math.max(until, window.from));
 	for (const ability of [...open.keys()]) close(ability, end, true);
@@ -233,12 +244,12 @@ export interface Placed<B extends Bar = Bar> {
  * Bars that last at the same time one below the other; each takes `least` seconds of its row. What has stopped or has not
  * ended has its words rather than what has.
  */
-export function placed<B extends Bar>(bars: readonly B[], least = 0): { readonly rows: number; readonly all: readonly Placed<B>[] } {
+export function placed<B extends Bar>(bars: readonly B[], least = 0, most = MOST_ROWS): { readonly rows: number; readonly all: readonly Placed<B>[] } {
 	const rows: { end: number; last: { bar: B; row: number; crowded: boolean } }[] = [];
 	const all: { bar: B; row: number; crowded: boolean }[] = [];
 	for (const bar of [...bars].sort((a, b) => a.from - b.from)) {
 		const free = rows.findIndex(({ end }) => end <= bar.from);
-		const place = { bar, row: free >= 0 ? free : Math.min(rows.length, MOST_ROWS - 1), crowded: free < 0 && rows.length === MOST_ROWS };
+		const place = { bar, row: free >= 0 ? free : Math.min(rows.length, most - 1), crowded: free < 0 && rows.length === most };
 		const yielding = place.crowded && lasts(bar) ? rows.findLastIndex(({ last }) => !lasts(last.bar)) : -1;
 		const other = rows[yielding];
 		if (other) {

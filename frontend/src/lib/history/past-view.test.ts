@@ -1,6 +1,7 @@
 import { expect, test } from 'vitest';
 import type { Past } from '#lib/contract.ts';
-import { alarm, estimate, task, view } from '#lib/testing/view.ts';
+import { stoppedOf } from '#lib/operation/standing.ts';
+import { alarm, estimate, operation, task, view } from '#lib/testing/view.ts';
 import { pastView } from './past-view.ts';
 
 const past: Past = {
@@ -48,4 +49,21 @@ test('the station as it was has nothing of what is so now', () => {
 	expect([then.mode, then.packml, then.by_order]).toEqual(['hold', 'held', true]);
 	expect([then.alarms, then.tasks, then.resources['robot']?.online]).toEqual([{}, {}, true]);
 	expect(now.variables['bolts']?.value, 'the present stays as it is').toBe('placed');
+});
+
+test('what stood then is seen, and what stands now is not', () => {
+	const then = pastView(now, past, { b: alarm({ text: 'The robot stands still' }) });
+	expect(Object.keys(then.alarms)).toEqual(['b']);
+});
+
+test('what had come to a stop then is known from its plan and its alarms', () => {
+	type Step = Past['plan']['steps'][number];
+	const running: Step = { ability: 'robot.move', title: 'Move', status: 'running', tick: 1, started: 900, ended: null, called_off: false, operations: ['place'] };
+	const other: Step = { ...running, ability: 'robot.wait', status: 'next', started: null, operations: ['wait'] };
+	const working: Past = { ...past, mode: 'automatic', active: ['place', 'wait'], plan: { ...past.plan, status: 'followed', steps: [running, other] } };
+	const here = { ...now, operations: { place: operation(), wait: operation() }, plan: { ...now.plan, steps: [] } };
+	const stuck = alarm({ kind: 'overdue', group: 'device', resources: ['robot'], since: 950, priority: 'medium' });
+	const stopped = stoppedOf(pastView(here, working, { 'overdue:robot.move': stuck }));
+	expect([stopped?.priority, [...(stopped?.operations ?? [])]]).toEqual(['medium', ['place']]);
+	expect(stoppedOf(pastView(here, working))).toBeNull();
 });

@@ -106,7 +106,7 @@ def show(
     from sequence_planner.history.state_at import looking_back, moment_view  # noqa: PLC0415
 
     with _replaying(model, database, archive) as (run, automaton, supervisor):
-        found = moment_view(looking_back(run, automaton, supervisor, number))
+        found = moment_view(run, looking_back(run, automaton, supervisor, number))
     if json:
         print_json(found.model_dump(mode="json"))
         return
@@ -122,7 +122,7 @@ def _replay_lines(past: PastView) -> Iterator[str]:
     yield f"running: {', '.join(past.running) or 'nothing'}"
     yield f"plan {past.plan.status}: {past.plan.reason}"
     for step in past.plan.steps:
-        yield f"  {step.status}: {step.ability}"
+        yield f"  {'called off' if step.called_off else step.status}: {step.ability}"
     for name, value in past.values.items():
         text = "unknown" if value is None else str(value).lower() if isinstance(value, bool) else str(value)
         yield f"{name} = {text}"

@@ -321,10 +321,12 @@ class RunRecorder:
         if outcome is None:
             return {}
         before, self._finished = self._finished, frozenset(outcome.finished)
+        abilities = self._execution.automaton.abilities
         told = {
             "finished": [name for name in outcome.finished if name not in before],
             "ended": list(outcome.ended),
             "started": list(outcome.started),
+            "at_once": [name for name in outcome.started if abilities[name].finish_guard is None],
             "activated": sorted(outcome.activated),
             "completed": sorted(outcome.completed),
             "called_off": list(outcome.called_off),

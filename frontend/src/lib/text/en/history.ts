@@ -175,9 +175,7 @@ export const history = {
 		then: 'Then',
 		nowTitle: 'Now',
 		notNow: (when: string): string => `${when}, not now`,
-		live: 'The station as it is, live.',
 		lastHeard: 'When last heard',
-		old: 'The station as it was when it was last heard.',
 		more: 'All about this moment',
 		noOperation: 'no operation is active',
 		copy: 'Copy link',
@@ -195,7 +193,8 @@ export const history = {
 			done: 'done',
 			running: 'running',
 			next: 'next',
-			planned: 'planned'
+			planned: 'planned',
+			calledOff: 'called off'
 		},
 		changed: 'changed here',
 		same: 'as then',

@@ -175,9 +175,7 @@ export const history: Text['history'] = {
 		then: 'Då',
 		nowTitle: 'Nu',
 		notNow: (when) => `${when}, inte nu`,
-		live: 'Stationen som den är, direkt.',
 		lastHeard: 'När den senast hördes',
-		old: 'Stationen som den var när den senast hördes.',
 		more: 'Allt om denna stund',
 		noOperation: 'ingen operation är aktiv',
 		copy: 'Kopiera länken',
@@ -195,7 +193,8 @@ export const history: Text['history'] = {
 			done: 'klart',
 			running: 'pågick',
 			next: 'näst',
-			planned: 'planerat'
+			planned: 'planerat',
+			calledOff: 'avbrutet'
 		},
 		changed: 'ändrades här',
 		same: 'som då',
