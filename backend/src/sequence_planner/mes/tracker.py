@@ -644,7 +644,9 @@ def _taken(connection: Connection, order: JobOrder, news: News) -> None:
 
 def _over(connection: Connection, order: JobOrder, news: News, made: JobResponse) -> None:
     outcome, state, kind = _OUTCOMES[news.job.state]
-    number = responses.write(connection, made.model_copy(update={"description": order.description}), news.time)
+    known = {"description": order.description, "due": order.due}
+    known["reason"] = order.wished_because if order.wish is not None and outcome is not JobOutcome.COMPLETED else None
+    number = responses.write(connection, made.model_copy(update=known), news.time)
     over = {"ended": news.time, "wish": None, "wished_by": None, "wished_because": None}
     orders.become(connection, order, state, news.time, over)
     told: dict[str, JsonValue] = {"state": state.value, "outcome": outcome.value, "response": number}
