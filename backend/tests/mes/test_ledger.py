@@ -288,6 +288,8 @@ def test_an_order_says_why_it_is_paused_until_it_is_resumed(database: Database) 
         paused = orders.granted(connection, wished, 3.0)
         assert paused is not None
         assert (paused.state, paused.wish, paused.wished_because) == (OrderState.INTERRUPTED, None, "lunch")
-        resumed = orders.granted(connection, orders.command(connection, "a", OrderCommand.RESUME, SYSTEM, None, 4.0), 5.0)
+        resumed = orders.granted(
+            connection, orders.command(connection, "a", OrderCommand.RESUME, SYSTEM, None, 4.0), 5.0
+        )
         assert resumed is not None
         assert (resumed.state, resumed.wished_because) == (OrderState.RUNNING, None)

@@ -17,11 +17,11 @@ from sequence_planner.mes.shifts import Shift, Span, seconds_within, with_span
 # Kept as the records of the run's journal are read one after the other, together with what is made for jobs, so that
 # nothing is read twice and a server that is started anew knows them at once.
 #
-# Availability is that of ISO 22400-2, APT / PBT. The actual production time (APT) is that of PackML's `execute`, but for
-# the time in which all that runs is stuck: runs at devices of which an alarm says that they do not do what they should.
-# While the controller was away nothing was produced. The planned busy time (PBT) of a shift is all of it but its breaks, as
-# far as the station was watched. Nobody plans that of a day: it is all of it since the station worked first, without
-# the time in which it works by order and has none.
+# Availability is that of ISO 22400-2, APT / PBT. The actual production time (APT) is that of PackML's `execute`, but
+# for the time in which all that runs is stuck, at devices of which an alarm says that they do not do what they should.
+# While the controller was away nothing was produced. The planned busy time (PBT) of a shift is all of it but its
+# breaks, as far as the station was watched. Nobody plans that of a day: it is all of it since the station worked first,
+# without the time in which it works by order and has none.
 #
 # Records say when it worked and when products were done, and nothing of shifts: what a shift comes to is reckoned when
 # somebody asks, with the shifts as they are then.

@@ -75,8 +75,8 @@ class CorrectionMade(DataModel):
 class JobResponse(DataModel):
     """The account of what was made of an order. Times are in seconds since the epoch.
 
-    It was `due` by then, and stopped or aborted for a `reason`, where one was given. Of very many `deviations` the first
-    are told, and how many were left out.
+    It was `due` by then, and stopped or aborted for a `reason`, where one was given. Of very many `deviations` the
+    first are told, and how many were left out.
     """
 
     job_order: str

@@ -364,9 +364,7 @@ class Ledger(BaseModel):
             self.station = self.station.without(job)
         return told if record.number > (self.silent or 0) else []
 
-    def _count(
-        self, record: ReadRecord, news: Sequence[News], masters: WorkMastersView, had: Collection[str]
-    ) -> None:
+    def _count(self, record: ReadRecord, news: Sequence[News], masters: WorkMastersView, had: Collection[str]) -> None:
         """Keep the figures of the day. Of the work masters those that are not `had` had no job under way."""
         figures = self.figures
         if record.kind == BEGUN:

@@ -72,8 +72,8 @@ class OrderAnswer(AnswerModel):
     `stored_by` is the name of a person or a key.
 
     `commanded` is what the station is still to do with it, `allowed` the commands that the order allows now. Since
-    `began` the station works on it. `waits_for` says in words why nothing is done for it now, `reason` what was given as
-    it was paused or cancelled, or as it was asked for what is `commanded`.
+    `began` the station works on it. `waits_for` says in words why nothing is done for it now, `reason` what was given
+    as it was paused or cancelled, or as it was asked for what is `commanded`.
 
     `expected_start` and `expected_end` follow from the median of how long orders of its work master took, if the
     station goes on; null where nobody knows, as before one was completed.
