@@ -134,12 +134,18 @@ test.describe('when a part of the station dies', () => {
 		const hold = operate.getByTestId('stops').getByRole('button').last();
 		await hold.click();
 		await expect(hold, 'it is said at once that it is on its way').toHaveText('Sending', { timeout: 500 });
-		await expect(operate.getByTestId('stops').locator('..').getByRole('alert').filter({ hasText: 'Not sent' })).toContainText(safety, { timeout: 15_000 });
+		await expect(operate.getByTestId('not-live').getByRole('alert')).toHaveText('Hold was not answered: nobody knows whether it has arrived.', { timeout: 15_000 });
+		await expect(operate.getByTestId('not-live')).toContainText(safety);
 		await expect(hold).toHaveText('Hold');
 		await station.server.kill();
 		await Promise.all([
 			expect(operate.getByTestId('not-live')).toContainText('connection to the server is lost', { timeout: 2000 }),
 			expect(watch.getByTestId('not-live')).toBeVisible({ timeout: 2000 })
 		]);
+		await hold.click();
+		await expect(operate.getByTestId('not-live').getByRole('alert'), 'in place of what was said before').toHaveText('Hold was not sent.', { timeout: 15_000 });
+		await operate.getByTestId('not-live').getByRole('button', { name: 'Try now' }).click();
+		await operate.getByRole('link', { name: 'Orders' }).click();
+		await expect(operate.getByRole('main').getByText(/^as it was at/)).toBeVisible();
 	});
 });

@@ -133,7 +133,7 @@ test('an order is stored, waits and says why, is worked, interrupted and resumed
 		const response = eva.locator('[data-response]').filter({ hasText: 'Engine 4712' });
 		await doTasks(eva, async () => (await response.count()) > 0);
 		await expect(response).toContainText('completed');
-		await expect(eva.getByRole('region', { name: 'Made today' }).getByRole('heading')).toContainText('1');
+		await expect(eva.getByRole('region', { name: 'Over today' }).getByRole('heading')).toContainText('1');
 		await store('Engine 4713', '0');
 		await expect(row('Engine 4713'), 'it is known by now how long one takes').toContainText(/ready \d/);
 		await expect(eva.getByTestId('order-line').getByText(/^Engine 4712 · [0-9a-f]{4}, made from/)).toBeAttached();
