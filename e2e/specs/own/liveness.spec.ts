@@ -129,6 +129,11 @@ test.describe('when a part of the station dies', () => {
 
 	test('a server that is gone is said to be gone', async ({ operate, watch, station }) => {
 		const safety = 'use the safety devices of the station';
+		// What it is made of is here before the server is gone.
+		await operate.getByRole('link', { name: 'Orders', exact: true }).click();
+		await expect(operate.getByRole('heading', { name: 'Orders', exact: true })).toBeVisible();
+		await operate.getByRole('link', { name: 'Operate', exact: true }).click();
+		await expect(operate.getByRole('region', { name: 'Plan' })).toBeVisible();
 		station.server.signalTree('SIGSTOP');
 		await expect(operate.getByTestId('not-live')).toContainText(safety, { timeout: 2000 });
 		const hold = operate.getByTestId('stops').getByRole('button').last();
@@ -145,7 +150,8 @@ test.describe('when a part of the station dies', () => {
 		await hold.click();
 		await expect(operate.getByTestId('not-live').getByRole('alert'), 'in place of what was said before').toHaveText('Hold was not sent.', { timeout: 15_000 });
 		await operate.getByTestId('not-live').getByRole('button', { name: 'Try now' }).click();
-		await operate.getByRole('link', { name: 'Orders' }).click();
+		await operate.getByRole('link', { name: 'Orders', exact: true }).click();
+		await expect(operate.getByRole('heading', { name: 'Orders', exact: true })).toBeVisible();
 		await expect(operate.getByRole('main').getByText(/^as it was at/)).toBeVisible();
 	});
 });
