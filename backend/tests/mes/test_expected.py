@@ -5,13 +5,14 @@ from __future__ import annotations
 import itertools
 from typing import Any
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from sequence_planner.controller.views.details import WorkMastersView, WorkMasterView, WorkOperationView
-from sequence_planner.controller.views.station import JobView, StationView
+from sequence_planner.controller.views.station import JobView, PlanView, StationView
 from sequence_planner.db.database import Database
-from sequence_planner.execution.vocabulary import JobState, Mode, Production
+from sequence_planner.execution.vocabulary import JobState, Mode, PlanStatus, Production
 from sequence_planner.mes import expected as reckoning
 from sequence_planner.mes import responses
 from sequence_planner.mes.expected import CycleTimes, ExpectedTimes, expected
@@ -127,8 +128,56 @@ def test_one_after_the_other_is_expected_where_they_are_in_each_others_way() -> 
     assert ends(worked(1), order(2, "pump")) == [NOW + 320, NOW + 100]
 
 
-def test_one_that_takes_longer_is_expected_any_moment() -> None:
-    assert ends(worked(1, began=NOW - 5000), order(2)) == [NOW, NOW + 420]
+def test_one_that_takes_longer_is_expected_when_others_were_that_did() -> None:
+    assert ends(worked(1, began=NOW - 500), order(2)) == [NOW + 400, NOW + 820]
+    assert ends(worked(1, began=NOW - 950), order(2)) == [NOW + 40, NOW + 460], "a bit longer than any"
+
+
+def test_of_one_that_takes_longer_than_any_nobody_knows_nor_of_what_follows() -> None:
+    assert ends(worked(1, began=NOW - 5000), order(2), order(3, "pump")) == [None, None, NOW + 100]
+
+
+def running(**more: object) -> PlanView:
+    step = {"resource": "nutrunner", "ability": "robot.move", "started": NOW - 20, "expected_end": NOW - 1, **more}
+    plan = example_view().plan
+    return plan.model_copy(update={"steps": [plan.steps[0].model_copy(update=step)]})
+
+
+@pytest.mark.parametrize(
+    ("kind", "since", "resource", "ended", "known"),
+    [
+        ("overdue", NOW - 5, "nutrunner", None, False),
+        ("still", NOW - 5, "nutrunner", None, False),
+        ("silent", NOW - 50, "nutrunner", None, False),
+        ("given-up", NOW - 50, "nutrunner", None, True),  # and yet something else was begun there
+        ("overdue", NOW - 5, "nutrunner", NOW - 1, True),
+        ("overdue", NOW - 5, "robot", None, True),
+        ("forced", NOW - 5, "nutrunner", None, True),
+    ],
+)
+def test_while_all_that_runs_is_stopped_nobody_knows(
+    kind: str, since: float, resource: str, ended: float | None, known: bool
+) -> None:
+    told = {"kind": kind, "since": since, "resources": [resource], "ended": ended}
+    alarm = example_view().alarms["slow"].model_copy(update=told)
+    view = station(worked(1), plan=running(), alarms={f"{kind}:x": alarm})
+    assert ends(worked(1), order(2), view=view) == ([NOW + 320, NOW + 740] if known else [None, None])
+
+
+def test_while_a_person_takes_longer_than_people_do_nobody_knows() -> None:
+    def waiting(since: float) -> StationView:
+        plan = running(ability="operator.place", resource="operator", started=since - 5, expected_end=since)
+        return station(worked(1), plan=plan)
+
+    assert ends(worked(1), view=waiting(NOW - 8)) == [NOW + 320]
+    assert ends(worked(1), view=waiting(NOW - 12)) == [None]
+
+
+def test_without_a_plan_for_what_is_to_be_done_nobody_knows() -> None:
+    plan = example_view().plan.model_copy(update={"status": PlanStatus.NONE, "steps": []})
+    assert ends(worked(1), order(2), view=station(worked(1), plan=plan)) == [None, None]
+    idle = {name: each.model_copy(update={"active": False}) for name, each in example_view().operations.items()}
+    assert ends(order(1), view=station(plan=plan, operations=idle)) == [NOW + 420]
 
 
 def test_nothing_is_expected_where_nobody_knows() -> None:

@@ -79,6 +79,10 @@ class Station:
     def tick(self, **content: object) -> None:
         self.add("ticked", now=[self.now, self.monotonic], **content)
 
+    def alarm(self, key: str, resource: str, ended: float | None = None) -> None:
+        content = {"alarm": key, "kind": key.partition(":")[0], "resources": [resource], "ended": ended}
+        self.records.append(RunRecord(len(self.records) + 1, self.now, "alarm", json.dumps(content), ""))
+
     def packml(self, state: str) -> None:
         self.add("packml", state=state, since=self.now, monotonic=self.monotonic)
 
@@ -114,6 +118,38 @@ def test_availability_is_the_time_in_execute_since_the_station_worked_first() ->
     assert (figures.counted, figures.available) == (1800, 1500)
     assert figures.availability == pytest.approx(1500 / 1800)
     assert figures.trend[0] == (MORNING + 1500, 1.0)
+
+
+def test_a_stop_is_not_available_though_the_state_is_execute() -> None:
+    station = Station()
+    station.packml("execute")
+    station.tick(started=["nutrunner.run", "robot.move"])
+    station.after(100).alarm("overdue:nutrunner.run", "nutrunner")
+    station.after(50).tick(ended=["robot.move"])
+    assert station.figures().available == 150, "the robot went on"
+    stopped = station.after(300).figures()
+    assert (stopped.counted, stopped.available) == (450, 150)
+    assert sum(last - first for first, last in stopped.worked) == 150, "and so in a shift"
+    station.alarm("overdue:nutrunner.run", "nutrunner", ended=station.now)
+    station.after(50).tick(ended=["nutrunner.run"], started=["robot.move"])
+    assert station.figures().available == 200
+    station.alarm("silent:camera", "camera")
+    assert station.after(60).figures().available == 260, "what is silent and not needed stops nothing"
+
+
+def test_what_was_called_off_as_the_station_was_held_runs_no_more() -> None:
+    station = Station()
+    station.packml("execute")
+    station.tick(started=["robot.move"])
+    station.after(60).packml("stopped")
+    station.packml("execute")
+    station.tick(started=["nutrunner.run"])
+    station.alarm("still:nutrunner", "nutrunner")
+    assert station.after(60).figures().available == 60
+    station.begin()
+    station.packml("execute")
+    station.tick(started=["nutrunner.run"])
+    assert station.after(60).figures().available == 120, "alarms of before are none any more"
 
 
 def test_nothing_is_known_before_the_station_worked() -> None:

@@ -260,9 +260,9 @@ def test_what_another_server_has_read_is_news_here_too(database: Database) -> No
 def test_an_order_that_is_over_stays_so_and_is_commanded_no_more(database: Database) -> None:
     OrderTracker(database).read_on(MASTERS)
     with database.writing() as connection:
-        order = orders.store(connection, OrderContent(work_master="a"), SYSTEM, 1.0, id="a", start=True)
+        order = orders.store(connection, OrderContent(work_master="a", due=9.0), SYSTEM, 1.0, id="a", start=True)
         orders.hand_over(connection, order, 1.0)
-        assert orders.command(connection, "a", OrderCommand.ABORT, SYSTEM, None, 2.0).wish == "abort"
+        assert orders.command(connection, "a", OrderCommand.ABORT, SYSTEM, "no parts", 2.0).wish == "abort"
 
     async def write(writer: RunWriter) -> None:
         writer.write("begun", 1.0, json.dumps({"values": {}, "senses": {}, "memory": {}, "jobs": {}}))
@@ -273,4 +273,23 @@ def test_an_order_that_is_over_stays_so_and_is_commanded_no_more(database: Datab
     assert OrderTracker(database).read_on(MASTERS) == (True, False)
     with database.reading() as connection:
         over = orders.get(connection, "a")
+        (made,) = responses.page(connection, 0, 10)
+    assert (made.reason, made.due) == ("no parts", 9.0)
     assert (over.state, over.wish, over.allowed) == (OrderState.ABORTED, None, (OrderCommand.CLEAR,))
+
+
+def test_an_order_says_why_it_is_paused_until_it_is_resumed(database: Database) -> None:
+    with database.writing() as connection:
+        order = orders.store(connection, OrderContent(work_master="a"), SYSTEM, 1.0, id="a", start=True)
+        handed = orders.hand_over(connection, order, 1.0)
+        assert handed is not None
+        orders.become(connection, handed, OrderState.RUNNING, 1.0, {})
+        wished = orders.command(connection, "a", OrderCommand.PAUSE, SYSTEM, "lunch", 2.0)
+        paused = orders.granted(connection, wished, 3.0)
+        assert paused is not None
+        assert (paused.state, paused.wish, paused.wished_because) == (OrderState.INTERRUPTED, None, "lunch")
+        resumed = orders.granted(
+            connection, orders.command(connection, "a", OrderCommand.RESUME, SYSTEM, None, 4.0), 5.0
+        )
+        assert resumed is not None
+        assert (resumed.state, resumed.wished_because) == (OrderState.RUNNING, None)

@@ -208,6 +208,21 @@ def test_a_command_that_is_not_allowed_says_which_are(mes: httpx.Client) -> None
     problem(mes.get("/api/v1/job-responses/4711"), 404, "no-job-response")
 
 
+def test_what_was_cancelled_and_aborted_is_told_with_the_reason(mes: httpx.Client) -> None:
+    for name in ("kept", "first", "second", "given-up", "cleared"):
+        store(mes, name, id=name, due=1000.0)
+    assert tell(mes, "first", "Cancel").json()["reason"] is None
+    tell(mes, "second", "Cancel", "ordered twice")
+    tell(mes, "given-up", "Abort", "no parts")
+    tell(mes, "cleared", "Abort")
+    tell(mes, "cleared", "Clear")
+    found = mes.get(f"{ORDERS}?cancelled=true").json()
+    told = [(each["id"], each["reason"], each["allowed"]) for each in found["job_orders"]]
+    assert (told, found["next"]) == ([("second", "ordered twice", []), ("first", None, [])], None)
+    response = mes.get("/api/v1/job-responses/given-up").json()
+    assert (response["outcome"], response["reason"], response["due"]) == ("aborted", "no parts", 1000.0)
+
+
 def test_pages_stay_as_they_are_while_orders_come(mes: httpx.Client) -> None:
     for number in range(7):
         store(mes, str(number), id=str(number), start=number % 2 == 0)

@@ -129,17 +129,29 @@ test.describe('when a part of the station dies', () => {
 
 	test('a server that is gone is said to be gone', async ({ operate, watch, station }) => {
 		const safety = 'use the safety devices of the station';
+		// What it is made of is here before the server is gone.
+		await operate.getByRole('link', { name: 'Orders', exact: true }).click();
+		await expect(operate.getByRole('heading', { name: 'Orders', exact: true })).toBeVisible();
+		await operate.getByRole('link', { name: 'Operate', exact: true }).click();
+		await expect(operate.getByRole('region', { name: 'Plan' })).toBeVisible();
 		station.server.signalTree('SIGSTOP');
 		await expect(operate.getByTestId('not-live')).toContainText(safety, { timeout: 2000 });
 		const hold = operate.getByTestId('stops').getByRole('button').last();
 		await hold.click();
 		await expect(hold, 'it is said at once that it is on its way').toHaveText('Sending', { timeout: 500 });
-		await expect(operate.getByTestId('stops').locator('..').getByRole('alert').filter({ hasText: 'Not sent' })).toContainText(safety, { timeout: 15_000 });
+		await expect(operate.getByTestId('not-live').getByRole('alert')).toHaveText('Hold was not answered: nobody knows whether it has arrived.', { timeout: 15_000 });
+		await expect(operate.getByTestId('not-live')).toContainText(safety);
 		await expect(hold).toHaveText('Hold');
 		await station.server.kill();
 		await Promise.all([
 			expect(operate.getByTestId('not-live')).toContainText('connection to the server is lost', { timeout: 2000 }),
 			expect(watch.getByTestId('not-live')).toBeVisible({ timeout: 2000 })
 		]);
+		await hold.click();
+		await expect(operate.getByTestId('not-live').getByRole('alert'), 'in place of what was said before').toHaveText('Hold was not sent.', { timeout: 15_000 });
+		await operate.getByTestId('not-live').getByRole('button', { name: 'Try now' }).click();
+		await operate.getByRole('link', { name: 'Orders', exact: true }).click();
+		await expect(operate.getByRole('heading', { name: 'Orders', exact: true })).toBeVisible();
+		await expect(operate.getByRole('main').getByText(/^as it was at/)).toBeVisible();
 	});
 });

@@ -106,6 +106,7 @@ test('an order is stored, waits and says why, is worked, interrupted and resumed
 		await dialog.getByLabel('Reason').fill('A bolt is missing');
 		await dialog.getByRole('button', { name: 'Pause' }).click();
 		await expect(row('Engine 4712')).toHaveAttribute('data-state', 'Interrupted');
+		await expect(row('Engine 4712')).toContainText('Paused: A bolt is missing');
 		await row('Engine 4712').getByRole('button', { name: 'Resume' }).click();
 		await dialog.getByRole('button', { name: 'Resume' }).click();
 		await expect(row('Engine 4712')).toHaveAttribute('data-state', 'Running');
@@ -130,10 +131,11 @@ test('an order is stored, waits and says why, is worked, interrupted and resumed
 		await row('Engine 4711').getByRole('button', { name: 'Withdraw' }).click();
 		await dialog.getByRole('button', { name: 'Withdraw' }).click();
 		await expect(row('Engine 4711')).toHaveCount(0);
+		await expect(eva.locator('[data-response]').filter({ hasText: 'Engine 4711' }), 'it stays in sight today').toContainText('withdrawn');
 		const response = eva.locator('[data-response]').filter({ hasText: 'Engine 4712' });
 		await doTasks(eva, async () => (await response.count()) > 0);
 		await expect(response).toContainText('completed');
-		await expect(eva.getByRole('region', { name: 'Made today' }).getByRole('heading')).toContainText('1');
+		await expect(eva.getByRole('region', { name: 'Over today' }).getByRole('heading')).toContainText('1');
 		await store('Engine 4713', '0');
 		await expect(row('Engine 4713'), 'it is known by now how long one takes').toContainText(/ready \d/);
 		await expect(eva.getByTestId('order-line').getByText(/^Engine 4712 · [0-9a-f]{4}, made from/)).toBeAttached();

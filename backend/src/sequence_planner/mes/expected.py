@@ -13,9 +13,10 @@ from typing import Any, Final
 
 from sqlalchemy import Connection, func, select
 
+from sequence_planner.controller.alarms.kinds import GIVEN_UP, MANY_SILENT, NEVER_HEARD, OVERDUE, SILENT, STILL
 from sequence_planner.controller.views.details import WorkMastersView
-from sequence_planner.controller.views.station import StationView
-from sequence_planner.execution.vocabulary import JobState
+from sequence_planner.controller.views.station import PlanStepView, StationStanding, StationView, StepStatus
+from sequence_planner.execution.vocabulary import JobState, PlanStatus
 from sequence_planner.mes.order import JobOrder, OrderState, Wish
 from sequence_planner.mes.queue import in_the_way, station_waits
 from sequence_planner.mes.responses import JobOutcome
@@ -24,6 +25,7 @@ from sequence_planner.mes.tables import JOB_RESPONSES
 # How long an order takes: from its begin to its end, as the last ones of its work master did that were completed.
 
 REMEMBERED: Final = 20  # orders of a work master
+_A_BIT_LONGER: Final = 1.1
 _LOOK_BACK: Final = 500  # responses that are read at most: nobody asks for weeks
 
 
@@ -42,6 +44,15 @@ class CycleTimes:
     def last_seconds(self, work_master: str) -> list[float]:
         """Return how long the last ones took, the oldest first."""
         return list(self._seconds.get(work_master, ()))
+
+    def longer(self, work_master: str, than: float) -> float:
+        """Return how long an order takes that has taken so long already: as the others did that took longer. One that
+        takes a bit longer than any may still be expected, and else nobody knows.
+        """
+        made = self.last_seconds(work_master)
+        others = [seconds for seconds in made if seconds > than]
+        at_most = max(made, default=0.0) * _A_BIT_LONGER
+        return median(others) if others else at_most if at_most > than else inf
 
     def read_on(self, connection: Connection) -> None:
         """Read what was made since, or the last of it where that is too much."""
@@ -70,6 +81,37 @@ class CycleTimes:
             self._seconds[made["work_master"]].append(ended - began)
 
 
+# Whether anything goes on now.
+
+_STUCK: Final = frozenset(each.name for each in (OVERDUE, STILL, GIVEN_UP))
+_UNHEARD: Final = frozenset(each.name for each in (SILENT, MANY_SILENT, NEVER_HEARD))
+_PATIENCE: Final = 10.0  # seconds that a person may take longer than expected, and as long again as expected
+
+
+def stands(view: StationView, now: float) -> bool:
+    """Return whether nothing goes on, until nobody knows when: devices do not do what they should, there is no plan, or
+    a person is waited for who takes longer than people do.
+    """
+    if view.standing is StationStanding.STOPPED:
+        return True
+    running = [step for step in view.plan.steps if step.status is StepStatus.RUNNING]
+    if running:
+        return all(_is_held_up(step, view, now) for step in running)
+    return view.plan.status is PlanStatus.NONE and any(operation.active for operation in view.operations.values())
+
+
+def _is_held_up(step: PlanStepView, view: StationView, now: float) -> bool:
+    began, end, ability = step.started, step.expected_end, view.abilities.get(step.ability)
+    if began is None:
+        return False
+    for alarm in view.alarms.values():
+        tells = alarm.kind in _UNHEARD or (alarm.kind in _STUCK and alarm.since >= began)
+        if tells and alarm.ended is None and step.resource in alarm.resources:
+            return True
+    is_human = ability is not None and ability.human
+    return is_human and end is not None and now > end + max(_PATIENCE, end - began)
+
+
 # What comes of it for the orders that are not over, if all goes on as it did.
 
 
@@ -94,9 +136,10 @@ def expected(
     """Return what is expected of `orders`, which are in the order of work; an order that is missing is not known.
 
     Those that are in each other's way are worked one after the other. Nothing is known of what comes after an order
-    that is interrupted or of which none was ever made, nor while the station does not work on orders.
+    that is interrupted, that takes longer than any did or of which none was ever made, nor while the station does not
+    work on orders, or stands.
     """
-    if masters is None or view is None or station_waits(view):
+    if masters is None or view is None or station_waits(view) or stands(view, now):
         return {}
     found: dict[str, ExpectedTimes] = {}
     free: dict[str, float] = {}  # by work master, when the last order of it that has a place is ready
@@ -121,7 +164,10 @@ def _end_of_worked(order: JobOrder, times: CycleTimes, view: StationView, now: f
         goes_on = False
     if seconds is None or not goes_on:
         return inf
-    return max(now, (now if order.began is None else order.began) + seconds)
+    began = now if order.began is None else order.began
+    if now <= began + seconds:
+        return began + seconds
+    return began + times.longer(order.work_master, now - began)
 
 
 def _in_turn(

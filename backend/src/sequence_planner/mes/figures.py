@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import time as clock
-from collections.abc import Collection, Mapping, Sequence
-from typing import Final
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from typing import Any, Final
 
 from pydantic import BaseModel, ConfigDict
 
+from sequence_planner.controller.alarms.kinds import OVERDUE, STILL
 from sequence_planner.controller.views.details import WorkMasterView
 from sequence_planner.controller.views.station import PackML
 from sequence_planner.execution.products import final_operation
@@ -16,10 +17,11 @@ from sequence_planner.mes.shifts import Shift, Span, seconds_within, with_span
 # Kept as the records of the run's journal are read one after the other, together with what is made for jobs, so that
 # nothing is read twice and a server that is started anew knows them at once.
 #
-# Availability is that of ISO 22400-2, APT / PBT. The actual production time (APT) is that of PackML's `execute`. While
-# the controller was away nothing was produced. The planned busy time (PBT) of a shift is all of it but its breaks, as
-# far as the station was watched. Nobody plans that of a day: it is all of it since the station worked first, without
-# the time in which it works by order and has none.
+# Availability is that of ISO 22400-2, APT / PBT. The actual production time (APT) is that of PackML's `execute`, but
+# for the time in which all that runs is stuck, at devices of which an alarm says that they do not do what they should.
+# While the controller was away nothing was produced. The planned busy time (PBT) of a shift is all of it but its
+# breaks, as far as the station was watched. Nobody plans that of a day: it is all of it since the station worked first,
+# without the time in which it works by order and has none.
 #
 # Records say when it worked and when products were done, and nothing of shifts: what a shift comes to is reckoned when
 # somebody asks, with the shifts as they are then.
@@ -28,6 +30,9 @@ from sequence_planner.mes.shifts import Shift, Span, seconds_within, with_span
 
 EXECUTE: Final = PackML.EXECUTE.value
 SUSPENDED: Final = PackML.SUSPENDED.value
+# Nothing runs in these; which runs were called off no other record says.
+_AT_REST: Final = frozenset(each.value for each in (PackML.IDLE, PackML.HELD, PackML.STOPPED, PackML.ABORTED))
+_STUCK: Final = frozenset(each.name for each in (OVERDUE, STILL))  # alarms
 CYCLES: Final = 20  # of a work master that are remembered
 _MASTERS: Final = 100  # of which there are cycles: work masters come and go with the model
 _TREND_EVERY: Final = 600.0  # seconds between two points
@@ -66,6 +71,8 @@ class DayFigures(BaseModel):
     counted_to: float | None = None  # on the wall clock
     monotonic: float | None = None  # the same instant; null where that is not known
     state: str | None = None
+    running: list[str] = []  # the abilities that are under way
+    stuck: dict[str, list[str]] = {}  # by the alarms that say so, the resources that do not do what they should
     by_order: bool = False
     idle: bool = False  # works by order, and has none
     day: float | None = None
@@ -85,7 +92,7 @@ class DayFigures(BaseModel):
     def copied(self) -> DayFigures:
         """One that can go on without this one."""
         lists = {"trend": [*self.trend], "made": [*self.made], "open": dict(self.open), "done": dict(self.done)}
-        lists["untouched"] = [*self.untouched]
+        lists |= {"untouched": [*self.untouched], "running": [*self.running], "stuck": dict(self.stuck)}
         return self.model_copy(update={**lists, "cycles": {name: [*each] for name, each in self.cycles.items()}})
 
     @property
@@ -111,11 +118,33 @@ class DayFigures(BaseModel):
         if self.heard is not None:
             self.pass_to(self.heard, None)
         self.turn(None)
+        self.running, self.stuck = [], {}
         self.monotonic = None
         self.pass_to(time, None)
 
+    @property
+    def works(self) -> bool:
+        """Whether the station produces: in `execute`, and not all that runs is stuck."""
+        held_up = {resource for each in self.stuck.values() for resource in each}
+        stands = bool(self.running) and all(name.partition(".")[0] in held_up for name in self.running)
+        return self.state == EXECUTE and not stands
+
+    def note_runs(self, started: Iterable[str], ended: Collection[str]) -> None:
+        """Note which abilities ended, and which started then."""
+        self.running = [*dict.fromkeys([*(each for each in self.running if each not in ended), *started])]
+
+    def note_alarm(self, alarm: Mapping[str, Any]) -> None:
+        """Note whether an alarm says that a device does not do what it should."""
+        key = alarm.get("alarm", "")
+        if alarm.get("kind") in _STUCK and alarm.get("ended") is None and alarm.get("resources"):
+            self.stuck[key] = [*alarm["resources"]]
+        else:
+            self.stuck.pop(key, None)
+
     def turn(self, state: str | None) -> None:
         """Note that the state of PackML is another one from now on."""
+        if state in _AT_REST:
+            self.running = []
         if state == EXECUTE and self.state != EXECUTE and self.counted_to is not None:
             self._begin_untouched(self.counted_to)
         self.state = state
@@ -147,7 +176,7 @@ class DayFigures(BaseModel):
                 return
             self.since = now - seconds
         self.counted += seconds
-        self.available += seconds if self.state == EXECUTE else 0.0
+        self.available += seconds if self.works else 0.0
         share = self.availability
         # Not at once: of the first seconds a share says nothing.
         last = self.trend[-1][0] if self.trend else self.since
@@ -158,7 +187,7 @@ class DayFigures(BaseModel):
         begin = now - seconds
         self.watched = begin if self.watched is None else min(self.watched, begin)
         spans = [each for each in self.worked if each[1] > now - _KEPT]
-        end = now if self.state == EXECUTE else begin
+        end = now if self.works else begin
         self.worked = with_span(spans, begin, end, joined=_JOINED, most=_SPANS)
 
     def _new_day(self) -> None:

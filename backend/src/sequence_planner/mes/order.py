@@ -141,7 +141,8 @@ def title_of(id: str, description: str) -> str:
 class JobOrder(OrderContent):
     """An order as it is stored; `number` counts the orders as they came, `revision` the changes of this one.
 
-    Since it was `handed_over` the station may work on it, `wish` is what it is still to do with it.
+    Since it was `handed_over` the station may work on it, `wish` is what it is still to do with it. That was wished, or
+    it was paused or cancelled, because of `wished_because`.
     """
 
     number: int

@@ -34,6 +34,7 @@ from sequence_planner.mes.tables import JOB_BEGIN, JOB_ORDERS, JOB_ORDERS_GONE
 from sequence_planner.texts.message import Argument, message
 
 MOST_OPEN: Final = 10_000  # orders that are not over
+_LOOKED_BACK: Final = 1000  # orders among which those that were cancelled are looked for
 _MOST_NAMED: Final = 500  # in one question to the database
 
 _NUMBERS: Final = (JOB_ORDERS.c.number, JOB_BEGIN.c.orders)  # whichever is highest was given last
@@ -135,14 +136,15 @@ def command(
         wished = {"wish": WISHES[given].value, "wished_by": by.model_dump_json(), "wished_because": reason}
         return _set(connection, order, now, wished)
     if given in (OrderCommand.CANCEL, OrderCommand.CLEAR):
-        changed = _set(connection, order, now, {"removed": now})
+        why = {"wished_because": reason} if given is OrderCommand.CANCEL else {}
+        changed = _set(connection, order, now, {"removed": now, **why})
         responses.remove(connection, id, now)
     else:
         state = AT_ONCE[given]
         changed = _set(connection, order, now, {"state": state.value, "ended": now if state in OVER else None})
     told: dict[str, JsonValue] = {"state": changed.state.value, "by": by.name, "reason": reason}
     if changed.is_over and not order.is_over:
-        told["response"] = responses.write(connection, responses.nothing_made(changed), now)
+        told["response"] = responses.write(connection, responses.nothing_made(changed, reason), now)
     events.append(connection, _EVENTS[given], id, now, told)
     return changed
 
@@ -166,7 +168,7 @@ def take_back(connection: Connection, order: JobOrder, now: float) -> JobOrder |
     state, kind = found
     over = {**_NO_WISH, "handed_over": None, "state": state.value, "ended": now}
     changed = _set(connection, current, now, over)
-    made = responses.nothing_made(changed)
+    made = responses.nothing_made(changed, current.wished_because)
     told: dict[str, JsonValue] = {
         "state": state.value,
         "reason": current.wished_because,
@@ -184,7 +186,9 @@ def granted(connection: Connection, order: JobOrder, now: float) -> JobOrder | N
     if current is None or current.is_over or current.wish is None or current.wish is not order.wish:
         return None
     state, kind = _GRANTED[current.wish]
-    changed = _set(connection, current, now, {**_NO_WISH, "state": state.value})
+    # Why it is paused is asked for as long as it is.
+    because = current.wished_because if state is OrderState.INTERRUPTED else None
+    changed = _set(connection, current, now, {**_NO_WISH, "wished_because": because, "state": state.value})
     told: dict[str, JsonValue] = {"state": state.value, "reason": current.wished_because}
     events.append(connection, kind, order.id, now, told)
     return changed
@@ -230,6 +234,15 @@ def page(connection: Connection, state: OrderState | None, after: int, limit: in
     if state is not None:
         chosen = chosen.where(JOB_ORDERS.c.state == state.value)
     return [JobOrder.from_row(row) for row in connection.execute(chosen).mappings()]
+
+
+def cancelled(connection: Connection, limit: int) -> list[JobOrder]:
+    """Up to `limit` orders that were cancelled, those first that were stored last; of the last ones that are kept."""
+    newest = connection.execute(select(func.max(JOB_ORDERS.c.number))).scalar_one() or 0
+    before_start = JOB_ORDERS.c.state.in_([str(each) for each in BEFORE_START])
+    chosen = select(JOB_ORDERS).where(JOB_ORDERS.c.number > newest - _LOOKED_BACK, ~_SHOWN, before_start)
+    ordered = chosen.order_by(JOB_ORDERS.c.number.desc()).limit(limit)
+    return [JobOrder.from_row(row) for row in connection.execute(ordered).mappings()]
 
 
 def open_orders(connection: Connection, known: Sequence[JobOrder] = ()) -> list[JobOrder]:

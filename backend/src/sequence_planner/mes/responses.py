@@ -75,13 +75,16 @@ class CorrectionMade(DataModel):
 class JobResponse(DataModel):
     """The account of what was made of an order. Times are in seconds since the epoch.
 
-    Of very many `deviations` the first are told, and how many were left out.
+    It was `due` by then, and stopped or aborted for a `reason`, where one was given. Of very many `deviations` the
+    first are told, and how many were left out.
     """
 
     job_order: str
     work_master: str
     description: str
     outcome: JobOutcome
+    due: float | None = None
+    reason: str | None = None
     began: float | None  # when the station began to work on it
     ended: float
     operations: list[OperationMade]
@@ -97,8 +100,8 @@ class StoredResponse(JobResponse):
     number: int
 
 
-def nothing_made(order: JobOrder) -> JobResponse:
-    """The response to an order that is over and of which the station has no job."""
+def nothing_made(order: JobOrder, reason: str | None = None) -> JobResponse:
+    """The response to an order that is over for a `reason`, and of which the station has no job."""
     assert order.is_over
     assert order.ended is not None
     return JobResponse(
@@ -106,6 +109,8 @@ def nothing_made(order: JobOrder) -> JobResponse:
         work_master=order.work_master,
         description=order.description,
         outcome=JobOutcome.ABORTED if order.state is OrderState.ABORTED else JobOutcome.STOPPED,
+        due=order.due,
+        reason=reason,
         began=order.began,
         ended=order.ended,
         operations=[],

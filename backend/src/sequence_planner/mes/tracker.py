@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -11,7 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field, JsonValue
 from sqlalchemy import Connection, delete, insert, select
 
 from sequence_planner.controller.commands.audit import JOB_WAITS, PACKML
-from sequence_planner.controller.views.details import WorkMastersView, WorkMasterView
+from sequence_planner.controller.views.details import WorkMastersView
 from sequence_planner.controller.views.part import Value
 from sequence_planner.db.database import Database
 from sequence_planner.execution.events import (
@@ -352,7 +352,7 @@ class Ledger(BaseModel):
         had = {job.work_master for job in self.jobs.values() if not job.state.is_over}
         # Operations begin and are completed before abilities start, and what was active then is what they start for.
         news = list(self._jobs(record, masters))
-        self._count(record, news, {name: its for name, its in masters.work_masters.items() if name not in had})
+        self._count(record, news, masters, had)
         self._start(record, masters)
         self._record_deviations(record)
         return news
@@ -364,15 +364,21 @@ class Ledger(BaseModel):
             self.station = self.station.without(job)
         return told if record.number > (self.silent or 0) else []
 
-    def _count(self, record: ReadRecord, news: Sequence[News], free: Mapping[str, WorkMasterView]) -> None:
-        """Keep the figures of the day. Of the work masters those are `free` of which no job was under way."""
+    def _count(self, record: ReadRecord, news: Sequence[News], masters: WorkMastersView, had: Collection[str]) -> None:
+        """Keep the figures of the day. Of the work masters those that are not `had` had no job under way."""
         figures = self.figures
         if record.kind == BEGUN:
             figures.note_start(record.time)
+            figures.running = [ability for (ability, _), ended in record.runs.items() if ended is None]
         else:
             figures.pass_to(record.time, record.monotonic)
         if record.packml is not None:
             figures.turn(record.packml)
+        lasting = [name for name in record.started if not _is_instant(masters, name)]
+        figures.note_runs(lasting, {*record.ended, *record.called_off})
+        for kind, content in record.deviations:
+            if kind == ALARM:
+                figures.note_alarm(content)
         if record.by_order is not None:
             figures.by_order = record.by_order
         figures.idle = figures.by_order and all(job.state.is_over for job in self.jobs.values())
@@ -383,6 +389,7 @@ class Ledger(BaseModel):
         if figures.by_order:
             figures.open, figures.untouched = {}, []
         else:
+            free = {name: its for name, its in masters.work_masters.items() if name not in had}
             figures.work_freely(free, record.activated, record.completed, record.time, starts=bool(record.started))
 
     def _jobs(self, record: ReadRecord, masters: WorkMastersView) -> Iterator[News]:
@@ -436,8 +443,7 @@ class Ledger(BaseModel):
             self._end_run(name, record.time, called_off=False)  # one that was never seen to end is over
             job = self._owner(name, masters)
             if job is not None:
-                ability = masters.abilities.get(name)
-                ended = record.time if ability is not None and ability.instant else None
+                ended = record.time if _is_instant(masters, name) else None
                 job.abilities.append(AbilityMade(ability=name, started=record.time, ended=ended, record=record.number))
 
     def _owner(self, ability: str, masters: WorkMastersView) -> JobMade | None:
@@ -493,6 +499,12 @@ class Ledger(BaseModel):
                         why=what["why"],
                     )
                 )
+
+
+def _is_instant(masters: WorkMastersView, name: str) -> bool:
+    """Return whether an ability is over as it starts: no record says that it ended."""
+    ability = masters.abilities.get(name)
+    return ability is not None and ability.instant
 
 
 def goal_reads(masters: WorkMastersView, work_master: str, operation: str) -> list[str]:
@@ -630,7 +642,9 @@ def _taken(connection: Connection, order: JobOrder, news: News) -> None:
 
 def _over(connection: Connection, order: JobOrder, news: News, made: JobResponse) -> None:
     outcome, state, kind = _OUTCOMES[news.job.state]
-    number = responses.write(connection, made.model_copy(update={"description": order.description}), news.time)
+    known = {"description": order.description, "due": order.due}
+    known["reason"] = order.wished_because if order.wish is not None and outcome is not JobOutcome.COMPLETED else None
+    number = responses.write(connection, made.model_copy(update=known), news.time)
     over = {"ended": news.time, "wish": None, "wished_by": None, "wished_because": None}
     orders.become(connection, order, state, news.time, over)
     told: dict[str, JsonValue] = {"state": state.value, "outcome": outcome.value, "response": number}

@@ -2,6 +2,7 @@
 import type { Figures } from '#lib/contract.ts';
 import { Reading } from '#lib/rest/reading.svelte.ts';
 import { useStation } from '#lib/stream/station.svelte.ts';
+import { standstillOf } from './standstill.ts';
 
 /** Milliseconds between two looks. */
 const EVERY = 10_000;
@@ -16,7 +17,7 @@ export function readFigures(): Reading<Figures> {
 	const work = $derived.by(() => {
 		const jobs = Object.entries(station.view?.jobs ?? {}).map(([id, job]) => `${id} ${job.state}`);
 		const done = Object.values(station.view?.operations ?? {}).reduce((sum, { completed }) => sum + completed, 0);
-		return [...jobs, done, station.view?.by_order].join();
+		return [...jobs, done, station.view?.by_order, standstillOf(station.view, station.time)].join();
 	});
 	const live = $derived(station.live);
 

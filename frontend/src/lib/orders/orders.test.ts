@@ -2,7 +2,7 @@ import { describe, expect, test } from 'vitest';
 import type { JobOrder, JobResponse, OrderOfWork } from '#lib/contract.ts';
 import { operation, view as viewOf } from '#lib/testing/view.ts';
 import { lastParts, lineOf, ownWords, partFor } from './line.ts';
-import { actsOf, inOrder, isOfDay, lastEnd, lateBy, nameOf, progressOf, secondsOf, standing, titleOf, waitsText } from './orders.ts';
+import { actsOf, inOrder, isOfDay, lastEnd, lateBy, lateText, nameOf, overOf, progressOf, secondsOf, standing, titleOf, untimed, waitsText, wasLateBy } from './orders.ts';
 
 function order(id: string, rest: Partial<JobOrder> = {}): JobOrder {
 	return {
@@ -31,6 +31,7 @@ function order(id: string, rest: Partial<JobOrder> = {}): JobOrder {
 		expected_start_at: null,
 		expected_end: null,
 		expected_end_at: null,
+		reason: null,
 		waits_for: [],
 		waits_for_messages: [],
 		sentence: null,
@@ -99,6 +100,32 @@ describe('how late an order is', () => {
 	});
 });
 
+test('by how much it is late is told in whole minutes, and never as more than it is', () => {
+	expect([0, 0.4, 20, 59, 60, 119, 3600].map(lateText)).toEqual(['', '', 'under 1 min late', 'under 1 min late', '1 min late', '1 min late', '60 min late']);
+	expect(lateText(3 * 3600)).toContain('3 h');
+});
+
+test('what is over is told with what was late and why, the last first; what was taken away among it', () => {
+	const made = { job_order: 'm', work_master: 'engine', description: '', began: 10, due: 150, reason: null } as JobResponse;
+	const responses = [
+		{ ...made, outcome: 'completed', ended: 200 },
+		{ ...made, job_order: 'x', outcome: 'aborted', ended: 300, reason: 'no parts' }
+	] as JobResponse[];
+	const over = overOf(responses, [order('c', { changed: 250, reason: 'ordered twice' })]);
+	expect(over.map(({ id, outcome, reason, response }) => [id, outcome, reason, response !== null])).toEqual([
+		['x', 'aborted', 'no parts', true],
+		['c', 'cancelled', 'ordered twice', false],
+		['m', 'completed', null, true]
+	]);
+	expect(over.map(wasLateBy)).toEqual([0, 0, 50]);
+});
+
+test('while the station stands no order has a time at which it begins or is ready', () => {
+	const orders = untimed([order('a', { began: 5, expected_end: 20 }), order('b', { expected_start: 20, expected_end: 30 })]);
+	expect(lastEnd(orders)).toBeNull();
+	expect(lineOf(orders, [], 10)).toMatchObject({ unknown: 1 });
+});
+
 test('when all are ready is said only where it is known of each', () => {
 	expect(lastEnd([order('a', { expected_end: 10 }), order('b', { expected_end: 30 })])).toBe(30);
 	expect(lastEnd([order('a', { expected_end: 10 }), order('b')])).toBeNull();
@@ -129,6 +156,9 @@ describe('the order of work over time', () => {
 		work_master: 'truck_engine',
 		description: 'Made',
 		outcome: 'completed',
+		due: null,
+		due_at: null,
+		reason: null,
 		began: 100,
 		began_at: null,
 		ended: 200,

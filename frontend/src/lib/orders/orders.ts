@@ -1,10 +1,11 @@
 /** Job orders as they are shown: in which order, what they are called, how far they are and how late they are. */
-import type { JobOrder, JobResponse, Message, OrderCommand, OrderOfWork, StationView } from '#lib/contract.ts';
+import type { JobOrder, JobOrders, JobResponse, Message, OrderCommand, OrderOfWork, StationView } from '#lib/contract.ts';
 import type { OrderCycle } from '#lib/figures/told.ts';
 import { groupsOf } from '#lib/operation/groups.ts';
 import { told, toldAll, toldHere } from '#lib/text/message.ts';
 import { say } from '#lib/text/text.svelte.ts';
 import { capital } from '#lib/wording/capital.ts';
+import { ageText } from '#lib/wording/time.ts';
 
 /** The states of an order that is not over, those first that the station works on. */
 export const OPEN = ['Running', 'Interrupted', 'AllowedToStart', 'NotAllowedToStart'] as const;
@@ -150,6 +151,48 @@ function activeIn({ operations }: StationView, names: readonly string[], plural?
 /** Seconds by which an order is late, or expected to be; 0 where it is not, or nobody knows. */
 export function lateBy({ due, expected_end }: Pick<JobOrder, 'due' | 'expected_end'>, now: number): number {
 	return due === null ? 0 : Math.max(0, Math.max(expected_end ?? now, now) - due);
+}
+
+/** Seconds up to which minutes say how late it is. */
+const HOURS = 7200;
+const MINUTE = 60;
+
+/** By how much it is late, in whole minutes; empty where it is not. */
+export function lateText(seconds: number): string {
+	if (seconds < 1) return '';
+	if (seconds < MINUTE) return say().orders.lateAtMost(say().common.time.min(1));
+	return say().orders.late(seconds < HOURS ? say().common.time.min(Math.floor(seconds / MINUTE)) : ageText(seconds * 1000));
+}
+
+/** An order that is over: made, put aside, or taken away before it began. */
+export interface OverOrder {
+	readonly id: string;
+	readonly description: string;
+	readonly work_master: string;
+	readonly outcome: JobResponse['outcome'] | 'cancelled';
+	readonly began: number | null;
+	readonly ended: number;
+	readonly due: number | null;
+	readonly reason: string | null;
+	/** What was made of it; null of one that was taken away. */
+	readonly response: JobResponse | null;
+}
+
+/** Those that are over, the last one first. */
+export function overOf(responses: readonly JobResponse[], cancelled: JobOrders['job_orders']): OverOrder[] {
+	const made = responses.map((response): OverOrder => ({ ...response, id: response.job_order, response }));
+	const gone = cancelled.map((order): OverOrder => ({ ...order, outcome: 'cancelled', ended: order.changed, response: null }));
+	return [...made, ...gone].sort((one, other) => other.ended - one.ended);
+}
+
+/** By how many seconds one that was completed was late. */
+export function wasLateBy({ outcome, due, ended }: OverOrder): number {
+	return due === null || outcome !== 'completed' ? 0 : Math.max(0, ended - due);
+}
+
+/** The orders as they are told while the station does not go on: when one begins or is ready nobody knows then. */
+export function untimed(orders: readonly JobOrder[]): JobOrder[] {
+	return orders.map((order) => ({ ...order, expected_start: null, expected_end: null }));
 }
 
 /** When all of them are expected to be ready; null where that is not known of each, or there are none. */

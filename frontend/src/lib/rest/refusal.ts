@@ -19,16 +19,21 @@ export interface Refusal {
 const PROBLEMS = '/problems/';
 const LONGEST_WAIT = 24 * 60 * 60;
 
-const NO_ANSWER = { status: null, kind: null, retryAfter: null, place: null };
+/** The kind of what was sent and not answered in time: whether it was done is not known. */
+export const NO_ANSWER = 'no-answer';
+const NOTHING = { status: null, kind: null, retryAfter: null, place: null };
 
-/** Nothing came back from an act: whether it was done is not known. */
-export function unreached(): Refusal {
-	return { title: say().door.refusal.notSent, detail: say().door.refusal.notSentWhy, ...NO_ANSWER };
+/** Nothing came back from an act, as it did not get there, or was not answered in time. */
+export function unreached(error?: unknown): Refusal {
+	const texts = say().door.refusal;
+	const late = error instanceof DOMException && (error.name === 'TimeoutError' || error.name === 'AbortError');
+	if (late) return { title: texts.noAnswer, detail: texts.noAnswerWhy, ...NOTHING, kind: NO_ANSWER };
+	return { title: texts.notSent, detail: texts.notSentWhy, ...NOTHING };
 }
 
 /** Nothing came back from a question, which changes nothing. */
 export function unread(): Refusal {
-	return { title: say().door.refusal.notRead, detail: say().door.refusal.notReached, ...NO_ANSWER };
+	return { title: say().door.refusal.notRead, detail: say().door.refusal.notReached, ...NOTHING };
 }
 
 /** The seconds that a `Retry-After` header stands for; null when it says none. */

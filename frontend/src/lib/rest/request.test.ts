@@ -60,7 +60,9 @@ describe('a request', () => {
 
 	test('that gets no answer may have acted; one that only reads has changed nothing', async () => {
 		vi.stubGlobal('fetch', () => Promise.reject(new TypeError('refused')));
-		expect(await command('DELETE', '/api/v1/station')).toMatchObject({ title: 'Not sent', status: null });
+		expect(await command('DELETE', '/api/v1/station')).toMatchObject({ title: 'Not sent', status: null, kind: null });
 		expect(await request('GET', '/api/v1/station')).toMatchObject({ ok: false, refusal: { title: 'Not read', status: null } });
+		vi.stubGlobal('fetch', () => Promise.reject(new DOMException('late', 'TimeoutError')));
+		expect(await command('DELETE', '/api/v1/station')).toMatchObject({ title: 'No answer', status: null, kind: 'no-answer' });
 	});
 });

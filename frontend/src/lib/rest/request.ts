@@ -80,8 +80,8 @@ export async function request<Value = undefined>(
 		const refusal = refusalOf(answer.status, text, answer.headers.get('Retry-After'));
 		if (refusal.kind === 'signed-out') for (const listener of listeners) listener();
 		return { ok: false, refusal };
-	} catch {
-		return { ok: false, refusal: method === 'GET' ? unread() : unreached() };
+	} catch (error) {
+		return { ok: false, refusal: method === 'GET' ? unread() : unreached(error) };
 	}
 }
 

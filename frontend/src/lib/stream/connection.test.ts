@@ -118,6 +118,23 @@ describe('a connection', () => {
 		connection.close();
 	});
 
+	test('is tried again at once where somebody asks for it, and once only', () => {
+		const connection = connect('/api/v1/stream', listener);
+		Socket.last.open();
+		Socket.last.onclose?.({ code: 1006 });
+		expect(Socket.all).toHaveLength(1);
+		connection.again();
+		expect(Socket.all).toHaveLength(2);
+		Socket.last.open();
+		vi.advanceTimersByTime(5000);
+		expect(Socket.all, 'what it waited for is not tried besides').toHaveLength(2);
+		connection.again();
+		expect(Socket.all.map(({ closed }) => closed), 'one that says nothing more is given up').toEqual([true, true, false]);
+		connection.close();
+		connection.again();
+		expect(Socket.all).toHaveLength(3);
+	});
+
 	test('that was closed stays closed', () => {
 		connect('/api/v1/stream', listener).close();
 		vi.advanceTimersByTime(60_000);

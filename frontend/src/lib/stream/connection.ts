@@ -31,6 +31,8 @@ export interface Listener<Message> {
 export interface Connection {
 	/** Asks for a new snapshot. */
 	resync(): void;
+	/** Connects anew at once, whatever it waits for. */
+	again(): void;
 	close(): void;
 }
 
@@ -101,6 +103,13 @@ export function connect<Message = StreamMessage>(
 		resync() {
 			const message: Resync = { kind: 'resync' };
 			if (socket?.readyState === WebSocket.OPEN) socket.send(JSON.stringify(message));
+		},
+		again() {
+			if (ended) return;
+			drop(NO_WORD);
+			clearTimeout(retry);
+			attempts = 0;
+			open();
 		},
 		close() {
 			ended = true;

@@ -5,7 +5,7 @@
  */
 import { createContext } from 'svelte';
 import type { StationView } from '#lib/contract.ts';
-import { connect } from './connection.ts';
+import { connect, type Connection } from './connection.ts';
 import { SILENCE, clockDifference, hear, serverAge, type Hearing } from './hearing.ts';
 import { judge, type Liveness } from './liveness.ts';
 import { NOTHING, receive, type Stream } from './receive.ts';
@@ -23,6 +23,7 @@ export class Station {
 	#open = $state(false);
 	#now = $state(0);
 	#names = $state.raw<readonly string[]>([]);
+	#connection: Connection | null = null;
 
 	/** What the variables were during the last minute. It is no state: who shows it looks again from time to time. */
 	readonly recorder = new Recorder();
@@ -77,6 +78,7 @@ export class Station {
 				if (attached) closed(code);
 			}
 		});
+		this.#connection = connection;
 		const timer = setInterval(look, REFRESH);
 		// A page that comes to the front must not show for a moment what was true when it left.
 		document.addEventListener('visibilitychange', look);
@@ -85,7 +87,13 @@ export class Station {
 			clearInterval(timer);
 			document.removeEventListener('visibilitychange', look);
 			connection.close();
+			this.#connection = null;
 		};
+	}
+
+	/** Connects to the server anew at once. */
+	tryNow(): void {
+		this.#connection?.again();
 	}
 }
 

@@ -72,7 +72,8 @@ class OrderAnswer(AnswerModel):
     `stored_by` is the name of a person or a key.
 
     `commanded` is what the station is still to do with it, `allowed` the commands that the order allows now. Since
-    `began` the station works on it. `waits_for` says in words why nothing is done for it now.
+    `began` the station works on it. `waits_for` says in words why nothing is done for it now, `reason` what was given
+    as it was paused or cancelled, or as it was asked for what is `commanded`.
 
     `expected_start` and `expected_end` follow from the median of how long orders of its work master took, if the
     station goes on; null where nobody knows, as before one was completed.
@@ -103,6 +104,7 @@ class OrderAnswer(AnswerModel):
     expected_start_at = iso("expected_start", optional=True)
     expected_end: float | None
     expected_end_at = iso("expected_end", optional=True)
+    reason: str | None
     waits_for: list[str]
     waits_for_messages: list[Message]
     sentence: Message | None  # what the station waits for with it, as one sentence
@@ -126,6 +128,7 @@ def all_answered(orders: Sequence[JobOrder], desk: OrderService) -> list[OrderAn
             allowed=[] if each.removed is not None else list(each.allowed),
             expected_start=times[each.id].start,
             expected_end=times[each.id].end,
+            reason=each.wished_because,
             waits_for=[*waits[each.id]],
             waits_for_messages=waits[each.id],
             sentence=waits_in_one(waits[each.id]),
@@ -232,12 +235,18 @@ async def read_job_orders(
     cursor: Annotated[int, Query(ge=0, le=LARGEST_NUMBER)] = 0,
     limit: Annotated[int, Query(ge=1, le=MOST_RECORDS)] = 50,
     sort: Annotated[Sort, Query()] = Sort.STORED,
+    cancelled: Annotated[bool, Query()] = False,
 ) -> OrdersAnswer:
     """The orders as they were stored, only those in a state where one is named. Those that come meanwhile are last.
 
-    With `sort=work` those that are not over, as they are to begin; pages may then overlap while that changes.
+    With `sort=work` those that are not over, as they are to begin; pages may then overlap while that changes. With
+    `cancelled` no others than those that were cancelled, when they were `changed` last; the newest come first, in one
+    page.
     """
     desk = desk_of(request)
+    if cancelled:
+        gone = await identity.read(lambda connection: orders.cancelled(connection, limit))
+        return OrdersAnswer(job_orders=all_answered(gone, desk), next=None)
     if sort is Sort.WORK:
         known = desk.orders
         found = await identity.read(lambda connection: orders.open_orders(connection, known))
@@ -466,8 +475,9 @@ class CorrectionAnswer(CorrectionMade):
 class ResponseAnswer(AnswerModel):
     """What was made of an order; `number` counts responses without gaps.
 
-    Times are in seconds since the epoch, and in ISO 8601 where `_at` is added. Of very many `deviations` the first are
-    told, and how many were left out.
+    Times are in seconds since the epoch, and in ISO 8601 where `_at` is added. It was `due` by then, and stopped or
+    aborted for a `reason`, where one was given. Of very many `deviations` the first are told, and how many were left
+    out.
     """
 
     number: int
@@ -475,6 +485,9 @@ class ResponseAnswer(AnswerModel):
     work_master: str
     description: str
     outcome: JobOutcome
+    due: float | None
+    due_at = iso("due", optional=True)
+    reason: str | None
     began: float | None
     began_at = iso("began", optional=True)
     ended: float

@@ -63,7 +63,9 @@ export const door = {
 	},
 	refusal: {
 		notSent: 'Not sent',
-		notSentWhy: 'The server cannot be reached. Nothing may have been done; look at the station before you try again.',
+		notSentWhy: 'The server cannot be reached. Look at the station before you try again.',
+		noAnswer: 'No answer',
+		noAnswerWhy: 'The server did not answer in time, and whether it was done is not known. Look at the station before you try again.',
 		notRead: 'Not read',
 		notReached: 'The server cannot be reached.',
 		refused: 'Refused',

@@ -4,8 +4,9 @@ export const figures = {
 	unknown: 'Not known yet',
 	/** What a figure waits for, where there is nothing to count yet. */
 	notMeasured: 'Not measured',
-	counted: 'Counted with a work master',
-	howCounted: 'Products are counted once the model has a work master that tells when one is done',
+	notMeasuredYet: 'Not measured yet',
+	counted: 'Not told by the model',
+	howCounted: 'Products are counted once a work master of the model has an operation that comes after all others',
 	afterFirst: 'After the first product',
 	afterWork: (seconds: number): string => `After ${seconds} s of work`,
 	inWork: 'In work',
@@ -17,6 +18,8 @@ export const figures = {
 	ready: (time: string): string => `ready ${time}`,
 	since: (time: string): string => `since ${time}`,
 	paused: 'order paused',
+	/** In place of when it is ready, while the station does not go on. */
+	standstill: { stopped: 'stopped', waits: 'waits' },
 	/** A pause when the product that is in work is done. */
 	after: {
 		full: 'Pause when this product is done',

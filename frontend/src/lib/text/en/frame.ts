@@ -72,7 +72,9 @@ export const frame = {
 	},
 	undeployed: (n: number): string => (n === 1 ? '1 change is not deployed' : `${n} changes are not deployed`),
 	noAlarms: 'No alarms',
-	alarmsWhenHeard: (n: number): string => (n === 0 ? 'No alarms when last heard' : n === 1 ? '1 alarm when last heard' : `${n} alarms when last heard`),
+	/** `over`: those that are over and that nobody has acknowledged, where no others stand. */
+	alarmsWhenHeard: (n: number, over: number): string =>
+		n > 0 ? `${n === 1 ? '1 alarm' : `${n} alarms`} when last heard` : over > 0 ? `${over} over, not acknowledged, when last heard` : 'No alarms when last heard',
 	moreAlarms: (n: number): string => `+${n}`,
 	alarmsOver: (n: number): string => `${n} over, not acknowledged`,
 	notAcknowledged: (n: number): string => `${n} not acknowledged`,
@@ -81,6 +83,7 @@ export const frame = {
 	connecting: 'Connecting',
 	notLiveStrong: 'Not live.',
 	lastHeard: (age: string): string => `This view is ${age} old. The station may have moved on.`,
+	tryNow: 'Try now',
 	/** They are sent from an old view too; whether they arrive nobody knows. */
 	relyNot: 'Nothing that is sent from here, Pause and Hold neither, is sure to arrive.',
 	safetyDevices: 'To stop, use the safety devices of the station.',
@@ -131,10 +134,11 @@ export const frame = {
 	notices: 'Notices',
 	help: (page: string): string => `Help: ${page}`,
 	search: 'Search or act',
-	/** Said of Pause or Hold pressed while the view was old: it arrived. */
-	arrived: {
-		paused: 'Pause has arrived at the station. This view is still old.',
-		hold: 'Hold has arrived at the station. This view is still old.'
+	/** Said of Pause or Hold where the view does not show what became of it. */
+	stopSaid: {
+		arrived: { paused: 'Pause has arrived at the station. This view is still old.', hold: 'Hold has arrived at the station. This view is still old.' },
+		notSent: { paused: 'Pause was not sent.', hold: 'Hold was not sent.' },
+		noAnswer: { paused: 'Pause was not answered: nobody knows whether it has arrived.', hold: 'Hold was not answered: nobody knows whether it has arrived.' }
 	},
 	palette: {
 		title: 'Search or act',

@@ -23,10 +23,12 @@ export const orders = {
 			follows: 'From now on the station goes on with the next product by itself, and orders wait.'
 		}
 	},
-	columns: { stored: 'Not released', waiting: 'Waiting', worked: 'In work', made: 'Made today' },
+	columns: { stored: 'Not released', waiting: 'Waiting', worked: 'In work', over: 'Over today' },
+	madeOf: (n: string): string => `${n} made`,
 	noneYet: {
 		title: 'No orders yet',
 		unknown: 'Whether there are orders is not known',
+		impossible: 'Nothing can be ordered',
 		freely: 'The station works freely: it goes on with the next product by itself. With an order you say what is made and when it is due; a MES can send orders too.',
 		byOrder: 'The station works by order: it makes nothing until there is one. Orders come from a MES, or are made here.'
 	},
@@ -34,7 +36,7 @@ export const orders = {
 		stored: 'Orders stand here until somebody allows them to start.',
 		waiting: 'Orders that may start stand here, in the order in which they are to begin.',
 		worked: 'No order in work.',
-		made: 'Nothing made by order today.'
+		over: 'No order is over today.'
 	},
 	before: (n: number): string => count(n, 'order before today', 'orders before today'),
 	moreThanShown: 'There are more orders than are shown here.',
@@ -63,6 +65,10 @@ export const orders = {
 		Ended: 'ended',
 		Aborted: 'aborted'
 	},
+	/** Of an order that is in work while the station does not go on. */
+	standstill: { stopped: 'stopped', waits: 'waits' },
+	/** Why it is paused, as whoever paused it said. */
+	pausedBecause: (why: string): string => `Paused: ${why}`,
 	commands: {
 		Start: 'Allow to start',
 		RevokeStart: 'Do not start yet',
@@ -89,6 +95,7 @@ export const orders = {
 	progress: (done: number, all: number): string => `${done} of ${all}`,
 	waits: (reasons: string): string => `Waits: ${reasons}`,
 	late: (time: string): string => `${time} late`,
+	lateAtMost: (time: string): string => `under ${time} late`,
 	notBefore: (time: string): string => `not before ${time}`,
 	by: (name: string): string => `from ${name}`,
 	found: 'Best for the due times and the durations known by now.',
@@ -124,7 +131,8 @@ export const orders = {
 	store: 'Add order',
 	isStored: (title: string): string => `The order ${title} is on the board.`,
 	done: (command: string, title: string): string => `${command}: ${title}. Done.`,
-	outcomes: { completed: 'completed', stopped: 'stopped', aborted: 'aborted' },
+	outcomes: { completed: 'completed', stopped: 'stopped', aborted: 'aborted', cancelled: 'withdrawn' },
+	reason: 'Reason',
 	operationsMade: (done: number, all: number): string => `${done} of ${all} operations completed`,
 	startsMade: (n: number): string => count(n, 'start of an ability', 'starts of abilities'),
 	corrections: (n: number): string => count(n, 'correction', 'corrections'),

@@ -61,7 +61,9 @@ export const door: Text['door'] = {
 	},
 	refusal: {
 		notSent: 'Inte skickat',
-		notSentWhy: 'Servern nås inte. Kanske är inget gjort; se på stationen innan du försöker igen.',
+		notSentWhy: 'Servern nås inte. Se på stationen innan du försöker igen.',
+		noAnswer: 'Inget svar',
+		noAnswerWhy: 'Servern svarade inte i tid, och ingen vet om det är gjort. Se på stationen innan du försöker igen.',
 		notRead: 'Inte läst',
 		notReached: 'Servern nås inte.',
 		refused: 'Nekat',

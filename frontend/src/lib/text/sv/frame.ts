@@ -67,7 +67,8 @@ export const frame: Text['frame'] = {
 	},
 	undeployed: (n) => (n === 1 ? '1 ändring är inte driftsatt' : `${n} ändringar är inte driftsatta`),
 	noAlarms: 'Inga larm',
-	alarmsWhenHeard: (n) => (n === 0 ? 'Inga larm när den senast hördes' : `${n} larm när den senast hördes`),
+	alarmsWhenHeard: (n, over) =>
+		n > 0 ? `${n} larm när den senast hördes` : over > 0 ? `${over} upphörda, okvitterade när den senast hördes` : 'Inga larm när den senast hördes',
 	moreAlarms: (n) => `+${n}`,
 	alarmsOver: (n) => `${n} upphörda, okvitterade`,
 	notAcknowledged: (n) => `${n} okvitterade`,
@@ -76,6 +77,7 @@ export const frame: Text['frame'] = {
 	connecting: 'Ansluter',
 	notLiveStrong: 'Inte direkt.',
 	lastHeard: (age) => `Det som visas är ${age} gammalt. Stationen kan ha gått vidare.`,
+	tryNow: 'Försök nu',
 	relyNot: 'Inget som skickas härifrån kommer säkert fram, inte heller Pausa och Stoppa.',
 	safetyDevices: 'Stoppa med stationens skyddsanordningar, till exempel nödstoppet.',
 	notUnderstood: (what) => `Servern förstod inte den här sidan: ${what}`,
@@ -121,9 +123,10 @@ export const frame: Text['frame'] = {
 	notices: 'Meddelanden',
 	help: (page) => `Hjälp: ${page}`,
 	search: 'Sök eller gör',
-	arrived: {
-		paused: 'Paus har nått stationen. Det som visas är fortfarande gammalt.',
-		hold: 'Stoppa har nått stationen. Det som visas är fortfarande gammalt.'
+	stopSaid: {
+		arrived: { paused: 'Pausa har nått stationen. Det som visas är fortfarande gammalt.', hold: 'Stoppa har nått stationen. Det som visas är fortfarande gammalt.' },
+		notSent: { paused: 'Pausa skickades inte.', hold: 'Stoppa skickades inte.' },
+		noAnswer: { paused: 'Pausa fick inget svar: ingen vet om det har kommit fram.', hold: 'Stoppa fick inget svar: ingen vet om det har kommit fram.' }
 	},
 	palette: {
 		title: 'Sök eller agera',

@@ -23,10 +23,12 @@ export const orders: Text['orders'] = {
 			follows: 'Från och med nu fortsätter stationen själv med nästa produkt, och order väntar.'
 		}
 	},
-	columns: { stored: 'Inte släppta', waiting: 'Väntar', worked: 'I arbete', made: 'Tillverkat i dag' },
+	columns: { stored: 'Inte släppta', waiting: 'Väntar', worked: 'I arbete', over: 'Avslutade i dag' },
+	madeOf: (n) => `${n} tillverkade`,
 	noneYet: {
 		title: 'Inga order än',
 		unknown: 'Om det finns order är inte känt',
+		impossible: 'Inget kan beställas',
 		freely: 'Stationen arbetar fritt: den fortsätter själv med nästa produkt. Med en order säger du vad som ska göras och när det ska vara klart; ett MES kan också skicka order.',
 		byOrder: 'Stationen arbetar efter order: den gör inget förrän det finns en. Order kommer från ett MES, eller görs här.'
 	},
@@ -34,7 +36,7 @@ export const orders: Text['orders'] = {
 		stored: 'Här står order tills någon låter dem börja.',
 		waiting: 'Här står order som får börja, i den ordning de ska börja.',
 		worked: 'Ingen order i arbete.',
-		made: 'Inget tillverkat på order i dag.'
+		over: 'Ingen order har avslutats i dag.'
 	},
 	before: (n) => count(n, 'order före i dag', 'order före i dag'),
 	moreThanShown: 'Det finns fler order än som visas här.',
@@ -63,6 +65,8 @@ export const orders: Text['orders'] = {
 		Ended: 'avslutad',
 		Aborted: 'nedlagd'
 	},
+	standstill: { stopped: 'står', waits: 'väntar' },
+	pausedBecause: (why) => `Pausad: ${why}`,
 	commands: {
 		Start: 'Låt börja',
 		RevokeStart: 'Låt inte börja än',
@@ -89,6 +93,7 @@ export const orders: Text['orders'] = {
 	progress: (done, all) => `${done} av ${all}`,
 	waits: (reasons) => `Väntar: ${reasons}`,
 	late: (time) => `${time} sen`,
+	lateAtMost: (time) => `under ${time} sen`,
 	notBefore: (time) => `inte före ${time}`,
 	by: (name) => `från ${name}`,
 	found: 'Bäst för de sluttider och varaktigheter som är kända.',
@@ -123,7 +128,8 @@ export const orders: Text['orders'] = {
 	store: 'Lägg till order',
 	isStored: (title) => `Ordern ${title} är på tavlan.`,
 	done: (command, title) => `${command}: ${title}. Klart.`,
-	outcomes: { completed: 'slutförd', stopped: 'stoppad', aborted: 'nedlagd' },
+	outcomes: { completed: 'slutförd', stopped: 'stoppad', aborted: 'nedlagd', cancelled: 'borttagen' },
+	reason: 'Orsak',
 	operationsMade: (done, all) => `${done} av ${all} operationer slutförda`,
 	startsMade: (n) => count(n, 'start av en förmåga', 'starter av förmågor'),
 	corrections: (n) => count(n, 'rättelse', 'rättelser'),
