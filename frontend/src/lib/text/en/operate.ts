@@ -209,7 +209,10 @@ export const operate = {
 		comesHere: 'What the station asks of you comes here.',
 		goesOn: 'Your task goes on',
 		toldAbove: 'Its problem is told above',
+		thenBegins: 'Then starts:',
 		thenMoves: 'Then moves:',
+		/** Of devices for which there is no plan before the task is done. */
+		mayMove: (who: string): string => `${who} may move as soon as this is done: keep clear.`,
 		next: 'Next for you:',
 	},
 	problem: {

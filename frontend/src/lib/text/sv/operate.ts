@@ -200,7 +200,9 @@ export const operate: Text['operate'] = {
 		comesHere: 'Det stationen ber dig om kommer hit.',
 		goesOn: 'Din uppgift fortsätter',
 		toldAbove: 'Problemet berättas ovan',
+		thenBegins: 'Sedan börjar:',
 		thenMoves: 'Sedan rör sig:',
+		mayMove: (who) => `${who} kan röra sig så snart det här är klart: håll undan.`,
 		next: 'Nästa för dig:',
 	},
 	problem: {
