@@ -1,7 +1,7 @@
 import { expect, test } from 'vitest';
 import type { Job, StationView } from '#lib/contract.ts';
 import { alarm, operation, PLAN, step, view } from '#lib/testing/view.ts';
-import { isAtWork, standingsOf, standstillTone, stoppedTone } from './standing.ts';
+import { isAtWork, standingsOf, standstillTone, stoppedTone, underWay } from './standing.ts';
 
 const standings = (over: Partial<StationView>): Record<string, string> => Object.fromEntries(standingsOf(view(over)));
 
@@ -65,6 +65,14 @@ test('without a plan nothing goes on but what runs at devices that are heard', (
 	const silent = alarm({ resources: ['nutrunner'], priority: 'medium' });
 	expect(standings({ operations, plan, alarms: { silent } })).toEqual({ tighten: 'stopped', place: 'stopped' });
 	expect([standstillTone(view({ alarms: { silent } })), standstillTone(view({ alarms: { silent: { ...silent, ended: 200 } } }))]).toEqual(['medium', null]);
+});
+
+test('of several of a kind those at which somebody is at work are under way, or else the first', () => {
+	const active = operation({ active: true });
+	const worked = operation({ active: true, work: [{ began: 1, ended: null }] });
+	const under = (operations: StationView['operations']): string[] => [...underWay(view({ operations }))];
+	expect(under({ 'place(1)': active, 'place(2)': worked, take: active, leave: operation() })).toEqual(['place(2)', 'take']);
+	expect(under({ 'place(1)': active, 'place(2)': active })).toEqual(['place(1)']);
 });
 
 test('of several that are under way it is told at which somebody is at work', () => {

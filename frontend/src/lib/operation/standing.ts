@@ -64,8 +64,27 @@ export function stoppedOf(view: StationView): Stopped | null {
 	return { priority, operations: new Set(operations) };
 }
 
+/**
+ * The operations that are shown as under way: of several that differ in a parameter alone those at which somebody is at work, or else
+ * the first.
+ */
+export function underWay(view: StationView): ReadonlySet<string> {
+	const groups = new Map<string, string[]>();
+	for (const [name, standing] of standingsOf(view)) {
+		if (standing !== 'active' && standing !== 'stopped') continue;
+		const group = name.split('(')[0] ?? name;
+		groups.set(group, [...(groups.get(group) ?? []), name]);
+	}
+	return new Set(
+		[...groups.values()].flatMap((names) => {
+			const worked = names.filter((name) => isAtWork(view.operations[name] ?? { active: false, work: [] }));
+			return worked.length > 0 ? worked : names.slice(0, 1);
+		})
+	);
+}
+
 /** Whether somebody is at work for an active operation now: a step that serves it runs. */
-export function isAtWork({ active, work }: Operation): boolean {
+export function isAtWork({ active, work }: Pick<Operation, 'active' | 'work'>): boolean {
 	return active && work.at(-1)?.ended === null;
 }
 
