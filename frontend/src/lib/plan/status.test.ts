@@ -68,5 +68,5 @@ test('with a run that does not go on its start is in sight, and a little of what
 	expect(standsSince({ steps: running }, {})).toBeNull();
 	expect(standsSince({ steps: running }, { silent })).toBe(990);
 	const spans = [20, 45, 120, 0];
-	expect([spanFor(5, spans), spanFor(9.5, spans), spanFor(30, spans), spanFor(500, spans)]).toEqual([20, 45, 120, 120]);
+	expect([spanFor(5, spans), spanFor(9.5, spans), spanFor(30, spans), spanFor(500, spans)]).toEqual([20, 45, 0, 0]);
 });
