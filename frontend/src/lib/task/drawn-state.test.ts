@@ -1,22 +1,18 @@
 import { expect, test } from 'vitest';
-import { asAddress, withState } from './drawn-state.ts';
+import { drawnAt } from './drawn-state.ts';
 
-const SVG = '<svg xmlns="http://www.w3.org/2000/svg"><g id="pair_1"/><g id="pair_2"/><g id="pair_3"/></svg>';
+const IMAGE = '/api/v1/instructions/place.svg#pair_1';
+const state = (value: string): string => drawnAt(IMAGE, { 'bolts[pair_1]': { value }, mode: { value: true } });
 
-test('each part of a drawing has the value of the variable with its name as index', () => {
-	const values = { 'engine.bolts[pair_1]': { value: 'tightened' }, 'bolts[pair_2]': { value: 'placed' }, 'bolts[pair_3]': { value: null }, other: { value: true } };
-	const drawn = withState(SVG, values) ?? '';
-	expect(drawn).toContain('<g id="pair_1" data-bolts="tightened"/>');
-	expect(drawn).toContain('<g id="pair_2" data-bolts="placed"/>');
-	// What is unknown is not said to be anything.
-	expect(drawn).toContain('<g id="pair_3"/>');
+test('a drawing is read again when what it shows is another, and keeps the part that is marked', () => {
+	expect(state('placed')).toMatch(/^\/api\/v1\/instructions\/place\.svg\?state=\w+#pair_1$/);
+	expect(state('placed')).toBe(state('placed'));
+	expect(state('tightened')).not.toBe(state('placed'));
+	expect(drawnAt('/a.svg', { 'b[c]': { value: 1 } })).toMatch(/^\/a\.svg\?state=\w+$/);
 });
 
-test('a drawing of which no part is called so stays as it is', () => {
-	expect(withState(SVG, { 'doors[left]': { value: 'open' } })).toBeNull();
-	expect(withState(SVG, { 'bolts[pair]': { value: 'placed' } })).toBeNull();
-});
-
-test('the part that is marked stays marked', () => {
-	expect(asAddress('<svg/>', 'pair_1')).toBe('data:image/svg+xml,%3Csvg%2F%3E#pair_1');
+test('what shows no state stays as it is', () => {
+	expect(drawnAt(IMAGE, undefined)).toBe(IMAGE);
+	expect(drawnAt(IMAGE, { mode: { value: true } })).toBe(IMAGE);
+	expect(drawnAt('/a.png', { 'b[c]': { value: 1 } })).toBe('/a.png');
 });
