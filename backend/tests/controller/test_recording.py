@@ -30,6 +30,7 @@ TASK = TaskView(
     created=0.0,
     next_moves=[],
     movers=[],
+    begins=[],
     instruction=None,
     problem=None,
 )

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-from typing import cast
-
 import pytest
 
 from sequence_planner.automaton.automaton import State
@@ -17,14 +14,12 @@ from sequence_planner.controller.commands.tasks import (
     WaitingTask,
 )
 from sequence_planner.controller.features.tasks import OpenTasks, TaskHandler
-from sequence_planner.controller.views.station import NextMovesView, TaskView
+from sequence_planner.controller.views.station import TaskView
 from sequence_planner.core.clock import Timestamp
-from sequence_planner.core.immutable import replace
-from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import Mode
 from sequence_planner.texts.message import message
 from support.people import EVA
-from support.simulated import PAIRS, Rig, never, truck_engine
+from support.simulated import PAIRS, Rig, at_once, never, truck_engine
 
 PLACE_1, PLACE_2 = (f"operator.place_bolt_pair({pair})" for pair in PAIRS[:2])
 ACKNOWLEDGED = "operator.acknowledged"
@@ -118,35 +113,51 @@ def test_a_watch_that_speaks_on_a_topic_is_heard_beside_the_page() -> None:
     assert tasks.measured() == {ACKNOWLEDGED: True}
 
 
-def test_a_task_says_who_moves_next() -> None:
-    rig, automaton = Rig(), truck_engine()[0].automaton
-    abilities = automaton.abilities
+def shown(rig: Rig, *, goes_on: bool = True) -> TaskView:
+    """The only open task, as people see it."""
+    tasks = OpenTasks(rig.execution, rig.desk, lambda: goes_on, lambda resource: message("still.nothing"))
+    views = tasks.view_part(Timestamp(rig.now, rig.now))["tasks"]
+    assert isinstance(views, dict)
+    (view,) = views.values()
+    assert isinstance(view, TaskView)
+    return view
 
-    def moving() -> list[str]:
-        return [name for name in rig.execution.plan.order.names if abilities[name].human is None]
 
-    def shown(*, goes_on: bool, still: str = "") -> list[NextMovesView]:
-        stilled = {still: replace(abilities[still], moves=False)} if still else {}
-        execution = SimpleNamespace(
-            automaton=replace(automaton, abilities={**abilities, **stilled}), plan=rig.execution.plan
-        )
-        tasks = OpenTasks(
-            cast(Executor, execution), rig.desk, lambda: goes_on, lambda resource: message("still.nothing")
-        )
-        views = tasks.view_part(Timestamp(rig.now, rig.now))["tasks"]
-        assert isinstance(views, dict)
-        (view,) = views.values()
-        assert isinstance(view, TaskView)
-        return view.movers
-
+def test_before_a_task_is_done_it_says_what_starts_by_it_and_who_may_move() -> None:
+    """Hands are in the holes: whatever moves at once after it was named before, also after the last pair."""
+    rig, abilities = Rig(acknowledges=never), truck_engine()[0].automaton.abilities
     rig.start_production()
-    assert rig.run(20, until=lambda: bool(rig.desk.open) and len(moving()) > 2)
-    titles = [abilities[name].title for name in moving()[:3]]
-    assert shown(goes_on=True) == [NextMovesView(name="robot", title="Robot UR10", moves=titles[:2])]
-    assert shown(goes_on=False) == []
-    # What moves nothing is not said to move, and what moves after it is.
-    told = [title for view in shown(goes_on=True, still=moving()[0]) for title in view.moves]
-    assert told == titles[1:]
+    for _ in PAIRS:
+        assert rig.run(60, until=lambda: bool(rig.desk.open) and not rig.execution.plan.order.running[1:])
+        task, before = only(rig.desk), shown(rig)
+        pair = before.title.removeprefix("Place ")
+        assert before.begins == [f"Tighten {pair}"]
+        assert {mover.title for mover in before.movers} >= {"Robot UR10"}
+        rig.started.clear()
+        acknowledge(rig.desk, task.id, task.revision)
+        rig.run(3)
+        moved = {abilities[name].resource for name in rig.started if abilities[name].human is None}
+        assert moved
+        assert moved <= {mover.name for mover in before.movers}
+
+
+def test_what_moves_anyhow_is_not_said_of_the_next_task() -> None:
+    """The robot is on its way for the pair before: that waits for nobody."""
+    abilities = truck_engine()[0].automaton.abilities
+    rig = Rig(acknowledges=lambda task, now: len(rig.completed) < 2 and at_once(task, now))
+    rig.start_production()
+
+    def robot_is_ahead() -> bool:
+        return bool(rig.desk.open) and any(abilities[n].resource == "robot" for n in rig.execution.plan.order.names)
+
+    assert rig.run(20, until=robot_is_ahead)
+    assert [title for mover in shown(rig).movers for title in mover.moves] == []
+
+
+def test_nothing_moves_by_a_task_while_the_station_stands() -> None:
+    rig, _ = waiting()
+    still = shown(rig, goes_on=False)
+    assert (still.movers, still.begins, still.next_moves) == ([], [], [])
 
 
 def test_what_tells_the_planner_what_the_robot_holds_moves_nothing() -> None:

@@ -5,12 +5,16 @@ from __future__ import annotations
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
+from types import SimpleNamespace
+from typing import cast
 
 import httpx
 import pytest
 
 from sequence_planner.auth.roles import Role
+from sequence_planner.controller.views.station import VariableView
 from sequence_planner.model.files import LARGEST_PICTURE
+from sequence_planner.server.services.instructions import with_state
 from sequence_planner.server.settings import Settings
 from support.network import free_port
 from support.places import BOLT_TIGHTENING
@@ -57,6 +61,25 @@ def test_it_is_what_lies_in_the_folder(viewer: httpx.Client, model: Path, name: 
     assert answer.status_code == 200
     assert answer.content == (model / "instructions" / name).read_bytes()
     assert answer.headers["Content-Type"].partition(";")[0] == type_
+
+
+def test_a_drawing_has_the_state_of_what_its_parts_are_called_like() -> None:
+    svg = '<svg><g id="pair_1"/><g class="a" id="pair_2"/><g id="pair_3"/><g id="door"/></svg>'
+    values = {"engine.bolts[pair_1]": "tightened", "bolts[pair_2]": 'a"<', "bolts[pair_3]": None, "shut[door]": True}
+    variables = {name: cast(VariableView, SimpleNamespace(value=value)) for name, value in values.items()}
+    assert with_state(svg, variables) == (
+        '<svg><g id="pair_1" data-bolts="tightened"/><g class="a" id="pair_2" data-bolts=\'a"&lt;\'/><g id="pair_3"/>'
+        '<g id="door" data-shut="true"/></svg>'
+    )
+
+
+def test_with_a_state_a_drawing_is_another_and_pictures_are_not(viewer: httpx.Client) -> None:
+    plain, drawn = (viewer.get(f"{ADDRESS}/place_bolts.svg{asked}") for asked in ("", "?state=a1"))
+    assert drawn.status_code == 200
+    assert drawn.headers["Content-Type"].partition(";")[0] == "image/svg+xml"
+    assert drawn.headers["Content-Security-Policy"] == plain.headers["Content-Security-Policy"]
+    assert drawn.headers["ETag"] != plain.headers["ETag"]
+    assert viewer.get(f"{ADDRESS}/a.png?state=a1").content == PNG
 
 
 def test_what_is_opened_by_itself_runs_nothing(viewer: httpx.Client) -> None:

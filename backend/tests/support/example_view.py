@@ -260,6 +260,7 @@ def example_view(**changes: object) -> StationView:
                 created=995.0,
                 next_moves=["Move above the engine"],
                 movers=[NextMovesView(name="robot", title="Robot", moves=["Move above the engine"])],
+                begins=["Tighten"],
                 instruction=InstructionView(
                     text={
                         "en": "Put both bolts into the marked holes.",

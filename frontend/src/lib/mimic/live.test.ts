@@ -51,6 +51,8 @@ it('shows a thing where it is, between two stops, or in doubt', () => {
 	// Where it stood when it was heard last is told also to who has not looked on.
 	const silent = { ...variables({ to: 'pair', last: 'home' }), at: estimate({ value: null, last_known: 'above' }) };
 	expect(whereabouts(TRACK, silent, null)).toEqual({ from: 'above', to: 'above', kind: 'doubt' });
+	const onItsWay = { ...silent, last: estimate({ value: null, last_known: 'above' }), at: estimate({ value: null, last_known: 'between' }) };
+	expect(whereabouts(TRACK, onItsWay, null)).toEqual({ from: 'above', to: 'pair', kind: 'doubt' });
 	// It is drawn at no stop at which it was never seen.
 	expect(whereabouts(TRACK, variables({ at: null, to: 'above', last: null }), null)).toBeNull();
 	expect(whereabouts(TRACK, variables({ at: null, to: 'above', last: null }), 'home')).toEqual({ from: 'home', to: 'home', kind: 'doubt' });

@@ -12,6 +12,11 @@ export function valueOf(variables: Variables, name: string): Value | null {
 	return Object.hasOwn(variables, name) ? (variables[name]?.value ?? null) : null;
 }
 
+/** The value of a variable, or the last that was known of it. */
+function lastOf(variables: Variables, name: string): Value | null {
+	return valueOf(variables, name) ?? (Object.hasOwn(variables, name) ? (variables[name]?.last_known ?? null) : null);
+}
+
 /** Whether all tests hold; null where unknown values leave it open. */
 export function holds(tests: readonly MimicTest[], variables: Variables): boolean | null {
 	let open = false;
@@ -46,7 +51,7 @@ export function lookOf(part: MimicPart, variables: Variables): Look {
 export interface Whereabouts {
 	/** The stop at which it is, or was last. */
 	readonly from: string;
-	/** The stop to which it is under way; the same where it stands. */
+	/** The stop to which it is under way, or was when it was last heard; the same where it stands. */
 	readonly to: string;
 	/** `moving`: between two stops; `doubt`: nobody knows. */
 	readonly kind: 'there' | 'moving' | 'doubt';
@@ -57,11 +62,13 @@ export function whereabouts(track: MimicTrack, variables: Variables, last: strin
 	const isStop = (value: Value | null): value is string => track.stops.some((stop) => stop.value === value);
 	const position = valueOf(variables, track.position);
 	const target = track.target === null ? null : valueOf(variables, track.target);
-	const previous = track.previous === null ? null : valueOf(variables, track.previous);
+	const previous = track.previous === null ? null : lastOf(variables, track.previous);
 	if (isStop(position)) return { from: position, to: position, kind: 'there' };
-	const known = Object.hasOwn(variables, track.position) ? (variables[track.position]?.last_known ?? null) : null;
+	const known = lastOf(variables, track.position);
 	// It stood there when it was heard last.
 	if (position === null && isStop(known)) return { from: known, to: known, kind: 'doubt' };
+	// It was under way then, and what it was told to do was told before.
+	if (position === null && known !== null && isStop(previous)) return { from: previous, to: isStop(target) ? target : previous, kind: 'doubt' };
 	// Where nothing is heard of it, and nobody knows where it was, it is drawn at no stop: it may never have been there.
 	if (position === null && !isStop(previous) && last === null) return null;
 	const to = isStop(target) ? target : null;

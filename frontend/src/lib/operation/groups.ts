@@ -11,6 +11,9 @@ export interface Group {
 	readonly members: readonly Named[];
 }
 
+/** What stands in the parentheses of a name; empty where it has no parameters. */
+export const parametersOf = (name: string): string => /\((.*)\)$/.exec(name)?.[1] ?? '';
+
 /** All operations in groups, each at the place of its first; `plural` makes of a word that of several. */
 export function groupsOf(operations: Readonly<Record<string, Operation>>, plural = (word: string): string => word): Group[] {
 	const groups = new Map<string, Named[]>();

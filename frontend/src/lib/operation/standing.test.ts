@@ -1,7 +1,7 @@
 import { expect, test } from 'vitest';
 import type { Job, StationView } from '#lib/contract.ts';
 import { alarm, operation, PLAN, step, view } from '#lib/testing/view.ts';
-import { isAtWork, standingsOf, stoppedTone } from './standing.ts';
+import { isAtWork, standingsOf, standstillTone, stoppedTone, underWay } from './standing.ts';
 
 const standings = (over: Partial<StationView>): Record<string, string> => Object.fromEntries(standingsOf(view(over)));
 
@@ -46,13 +46,33 @@ test('one of which a step comes to no end has stopped, until that is over', () =
 	expect(at(overdue)).toEqual({ tighten: 'stopped', place: 'active' });
 	expect(at({ ...overdue, ended: 150 })).toEqual({ tighten: 'active', place: 'active' });
 	expect(at({ ...overdue, since: 99 })).toEqual({ tighten: 'active', place: 'active' });
-	expect(at({ ...overdue, kind: 'silent' })).toEqual({ tighten: 'active', place: 'active' });
+	// Of what is not heard nobody knows how far it is.
+	expect(at({ ...overdue, kind: 'silent' })).toEqual({ tighten: 'stopped', place: 'active' });
 	// A newer plan has other steps for what is worked on.
 	const worked = { ...operations, tighten: operation({ ...of, steps: ['8'], work: [{ began: 95, ended: null }] }) };
 	expect(standings({ operations: worked, plan: { ...PLAN, steps }, alarms: { overdue } })).toEqual({ tighten: 'stopped', place: 'active' });
 	// It is as urgent as the alarm that says so.
 	const tone = (priority: 'high' | 'medium'): string | null => stoppedTone(view({ plan: { ...PLAN, steps }, alarms: { overdue: { ...overdue, priority } } }));
 	expect([tone('medium'), tone('high'), stoppedTone(view())]).toEqual(['medium', 'high', null]);
+});
+
+test('without a plan nothing goes on but what runs at devices that are heard', () => {
+	const steps = [step('run', 'nutrunner', 0, { id: '7', status: 'running', started: 100 })];
+	const operations = { tighten: operation({ active: true, steps: ['7'] }), place: operation({ active: true }) };
+	const plan = { ...PLAN, status: 'none' as const, steps };
+	expect(standings({ operations, plan })).toEqual({ tighten: 'active', place: 'stopped' });
+	expect(standings({ operations, plan: { ...plan, status: 'planning' } })).toEqual({ tighten: 'active', place: 'active' });
+	const silent = alarm({ resources: ['nutrunner'], priority: 'medium' });
+	expect(standings({ operations, plan, alarms: { silent } })).toEqual({ tighten: 'stopped', place: 'stopped' });
+	expect([standstillTone(view({ alarms: { silent } })), standstillTone(view({ alarms: { silent: { ...silent, ended: 200 } } }))]).toEqual(['medium', null]);
+});
+
+test('of several of a kind those at which somebody is at work are under way, or else the first', () => {
+	const active = operation({ active: true });
+	const worked = operation({ active: true, work: [{ began: 1, ended: null }] });
+	const under = (operations: StationView['operations']): string[] => [...underWay(view({ operations }))];
+	expect(under({ 'place(1)': active, 'place(2)': worked, take: active, leave: operation() })).toEqual(['place(2)', 'take']);
+	expect(under({ 'place(1)': active, 'place(2)': active })).toEqual(['place(1)']);
 });
 
 test('of several that are under way it is told at which somebody is at work', () => {

@@ -1,7 +1,7 @@
 import { expect, test } from 'vitest';
 import type { Ability, Job, Operation } from '#lib/contract.ts';
 import { alarm, PLAN, step, view } from '#lib/testing/view.ts';
-import { awaited, isOfNoPlan, isUnheard, nothingNext, stoppedBy } from './status.ts';
+import { awaited, isOfNoPlan, isUnheard, nothingNext, spanFor, standsSince, stoppedBy } from './status.ts';
 
 const active = { active: true } as Operation;
 const idle = { ...PLAN, status: 'idle' as const };
@@ -61,4 +61,12 @@ test('each of two runs of a device has stopped that has an alarm of its own, and
 	expect(stopped({ 'overdue:tool.run': late })).toEqual([null, 'medium']);
 	expect(stopped({ 'overdue:tool.run': late, 'overdue:tool.float': late })).toEqual(['medium', 'medium']);
 	expect(stopped({ 'overdue:tool.float': { ...late, ended: 992 } })).toEqual([null, null]);
+});
+
+test('with a run that does not go on its start is in sight, and a little of what came before it', () => {
+	const silent = alarm({ kind: 'silent', resources: ['nutrunner'] });
+	expect(standsSince({ steps: running }, {})).toBeNull();
+	expect(standsSince({ steps: running }, { silent })).toBe(990);
+	const spans = [20, 45, 120, 0];
+	expect([spanFor(5, spans), spanFor(9.5, spans), spanFor(30, spans), spanFor(500, spans)]).toEqual([20, 45, 0, 0]);
 });

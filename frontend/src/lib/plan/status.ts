@@ -26,6 +26,23 @@ export function nothingNext(view: StationView): keyof Text['frame']['nothingNext
 	return awaitsOrder(view) ? 'noOrder' : 'idle';
 }
 
+/** The share of what is in sight that lies before the present while something does not go on. */
+export const BACK = 0.6;
+
+/** Seconds that can be looked back on at least: as many as the station keeps. */
+export const KEPT = 60;
+
+/** When the first of the runs began that do not go on: that come to no end, or of which nothing is heard; null where all go on. */
+export function standsSince({ steps }: Pick<Plan, 'steps'>, alarms: Alarms): number | null {
+	const began = steps.flatMap((step) => (stoppedBy(step, steps, alarms) !== null || isUnheard(step, alarms) ? (step.started ?? []) : []));
+	return began.length === 0 ? null : Math.min(...began);
+}
+
+/** The shortest of these stretches of time in which what began `age` seconds ago, and a little before it, is in sight; 0, which is all, where none is long enough. */
+export function spanFor(age: number, spans: readonly number[]): number {
+	return spans.find((span) => span * BACK >= age + 3 && span * BACK <= KEPT) ?? 0;
+}
+
 /** The people that a plan waits for: nothing else runs, and their tasks take longer than expected. */
 export function awaited({ plan, abilities }: Pick<StationView, 'plan' | 'abilities'>, now: number): string[] {
 	const running = plan.steps.filter(({ status }) => status === 'running');

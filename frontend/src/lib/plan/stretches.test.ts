@@ -1,6 +1,6 @@
 import { expect, test } from 'vitest';
-import { operation, step } from '#lib/testing/view.ts';
-import { ROWS, roomOf, stretchesOf } from './stretches.ts';
+import { operation, PLAN, step, task } from '#lib/testing/view.ts';
+import { expectedOf, ROWS, roomOf, stretchesOf } from './stretches.ts';
 
 const NOW = 1000;
 const steps = [
@@ -73,4 +73,21 @@ test('what goes on has its place before what is over, of which nothing is said w
 
 test('what is too long ago is not told', () => {
 	expect(stretchesOf({ old: operation({ began: NOW - 100, ended: NOW - 90 }) }, [], NOW, 60, 1)).toEqual([]);
+});
+
+test('what the list of operations shows as under way has begun on the plan, though its first step comes later', () => {
+	const operations = { tighten: operation({ active: true, active_since: NOW - 2, first_step: '2', last_step: '2' }) };
+	const at = (under: string[]): unknown[] => stretchesOf(operations, steps, NOW, 60, 1, new Set(under)).map(({ from, standing }) => [from, standing]);
+	expect(at(['tighten'])).toEqual([[-2, 'now']]);
+	expect(at([])).toEqual([[2, 'ahead']]);
+});
+
+test('what begins once a task is done is expected at the end of the task, for as long as another of its kind took', () => {
+	const operations = {
+		'tighten(p1)': operation({ title: 'Tighten pair 1', began: NOW - 30, ended: NOW - 25 }),
+		'tighten(p2)': operation({ title: 'Tighten pair 2' })
+	};
+	const of = { operations, plan: { ...PLAN, steps }, tasks: { a: { ...task(NOW - 4), ability: 'place', begins: ['Tighten pair 2'] } } };
+	expect(expectedOf(of, NOW)).toEqual([{ operation: 'tighten(p2)', title: 'Tighten pair 2', from: 2, to: 7, standing: 'expected' }]);
+	expect(expectedOf({ ...of, tasks: {} }, NOW)).toEqual([]);
 });

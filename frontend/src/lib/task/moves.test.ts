@@ -1,6 +1,6 @@
 import { expect, test } from 'vitest';
 import { task } from '#lib/testing/view.ts';
-import { movesOf } from './moves.ts';
+import { mayMove, movesOf, surelyOf } from './moves.ts';
 
 test('what moves next says who moves, and each once', () => {
 	const robot = { name: 'robot', title: 'Robot UR10', moves: ['Move to the place of the nutrunner', 'Lock the tool to the robot'] };
@@ -9,4 +9,9 @@ test('what moves next says who moves, and each once', () => {
 		'Robot UR10: Move to the place of the nutrunner, Lock the tool to the robot; Dock: Open'
 	);
 	expect(movesOf(task(900))).toBe('');
+});
+
+test('who may move is told apart from what the plan says', () => {
+	const of = { ...task(900), movers: [{ name: 'dock', title: 'Dock', moves: ['Open'] }, { name: 'robot', title: 'Robot UR10', moves: [] }] };
+	expect([surelyOf(of), mayMove(of), movesOf(of)]).toEqual(['Dock: Open', ['Robot UR10'], 'Dock: Open; Robot UR10']);
 });

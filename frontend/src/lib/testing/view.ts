@@ -67,7 +67,7 @@ export function operation(rest: Partial<Operation> = {}): Operation {
 
 export function task(created: number): Task {
 	const place = { ability: 'operator.place', resource: 'operator', title: 'Place', text: 'Place it' };
-	return { revision: 1, ...place, created, next_moves: [], movers: [], problem: null, instruction: null };
+	return { revision: 1, ...place, created, next_moves: [], movers: [], begins: [], problem: null, instruction: null };
 }
 
 export function alarm(rest: Partial<Alarm> = {}): Alarm {

@@ -13,7 +13,7 @@ type Words = Readonly<Record<string, string>>;
 export type PartNames = Pick<Names, 'station' | 'resources' | 'abilities' | 'tasks' | 'operations' | 'specifications' | 'work_masters'>;
 
 /** Lists of the titles of parts, without names. */
-const LISTS: ReadonlySet<string> = new Set(['silent', 'failing', 'next_moves', 'moves', 'lacks', 'by']);
+const LISTS: ReadonlySet<string> = new Set(['silent', 'failing', 'next_moves', 'moves', 'begins', 'lacks', 'by']);
 /** Under which names stand in documents, other than as the key of what has the title. */
 const NAMES = ['name', 'ability', 'operation', 'work_master'] as const;
 const STATION = 'station';

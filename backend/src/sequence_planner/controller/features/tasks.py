@@ -25,10 +25,11 @@ from sequence_planner.controller.commands.tasks import (
 from sequence_planner.controller.views.station import InstructionView, NextMovesView, TaskProblemView, TaskView
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
+from sequence_planner.execution.once_done import Consequences, OnceDone
 from sequence_planner.language.types import Value
 from sequence_planner.texts.message import Argument, Message, message
 
-_NEXT_MOVES = 2  # coming steps that a task names as what moves next
+_NEXT_MOVES = 2  # that are named of each resource that moves once a task is done
 
 
 class TaskHandler:
@@ -115,29 +116,31 @@ class OpenTasks:
     ) -> None:
         self._execution, self._tasks = execution, tasks
         self._goes_on, self._waiting = goes_on, waiting
+        self._consequences = Consequences(execution)
 
     def view_part(self, moment: Timestamp) -> dict[str, object]:
         """Its part of the view."""
         if not self._tasks.open:
             return {"tasks": {}}
-        abilities = self._execution.automaton.abilities
-        names = self._execution.plan.order.names if self._goes_on() else ()
-        moves = [each for each in map(abilities.__getitem__, names) if each.moves and each.human is None][:_NEXT_MOVES]
-        views = {
-            id_: TaskView(
+        automaton = self._execution.automaton
+        abilities, goes_on = automaton.abilities, self._goes_on()
+        views = {}
+        for id_, task in self._tasks.open.items():
+            then = self._consequences.of(task.ability, moment) if goes_on else OnceDone()
+            movers = _movers([abilities[name] for name in then.moves], then.may_move, automaton.resources)
+            views[id_] = TaskView(
                 revision=task.revision,
                 resource=abilities[task.ability].resource,
                 ability=task.ability,
                 title=task.title,
                 text=task.text,
                 created=task.created,
-                next_moves=[each.title for each in moves],
-                movers=_by_resource(moves, self._execution.automaton.resources),
+                next_moves=[title for mover in movers for title in mover.moves],
+                movers=movers,
+                begins=[automaton.operations[name].title for name in then.begins],
                 problem=_problem(self._tasks.problems.get(id_)),
                 instruction=_instruction(abilities[task.ability].instruction),
             )
-            for id_, task in self._tasks.open.items()
-        }
         return {"tasks": views}
 
     def causes(self, moment: Timestamp) -> Iterator[Cause]:
@@ -159,11 +162,15 @@ class OpenTasks:
             )
 
 
-def _by_resource(moves: Sequence[Ability], titles: Mapping[str, str]) -> list[NextMovesView]:
-    return [
-        NextMovesView(name=name, title=titles[name], moves=[each.title for each in moves if each.resource == name])
+def _movers(moves: Sequence[Ability], may: Iterable[str], titles: Mapping[str, str]) -> list[NextMovesView]:
+    """Who moves, of each the first of what it does, and who may."""
+    sure = [
+        NextMovesView(
+            name=name, title=titles[name], moves=[each.title for each in moves if each.resource == name][:_NEXT_MOVES]
+        )
         for name in dict.fromkeys(each.resource for each in moves)
     ]
+    return [*sure, *(NextMovesView(name=name, title=titles[name], moves=[]) for name in may)]
 
 
 def _instruction(instruction: Instruction | None) -> InstructionView | None:

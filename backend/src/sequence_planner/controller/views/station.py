@@ -701,7 +701,9 @@ class InstructionView(View):
 
 
 class NextMovesView(View):
-    """What moves once a task is acknowledged: a resource by name and title, and the titles of what it does."""
+    """What moves once a task is acknowledged: a resource by name and title, and the titles of what it does first; none
+    where it may move and there is no plan for it yet.
+    """
 
     name: str
     title: str
@@ -718,7 +720,8 @@ class TaskView(View):
     text: str
     created: float
     next_moves: list[str]  # titles of what moves once it is acknowledged; nothing while production stands
-    movers: list[NextMovesView]  # the same by resource, each of them once
+    movers: list[NextMovesView]  # the same by resource, each of them once, and who may move
+    begins: list[str]  # titles of the operations that become active once it is acknowledged
     problem: TaskProblemView | None
     instruction: InstructionView | None  # as the model has it, where it has one
 

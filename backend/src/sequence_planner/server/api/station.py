@@ -209,14 +209,20 @@ async def read_instruction(
     client: Controller,
     name: Annotated[str, Path(max_length=200)],
     if_none_match: Annotated[str | None, Header()] = None,
+    state: Annotated[str | None, Query(max_length=40)] = None,
 ) -> Response:
-    """A picture or a video of an instruction, by the name of its file; a watch reads those of its own tasks."""
+    """A picture or a video of an instruction, by the name of its file; a watch reads those of its own tasks.
+
+    With a `state`, whatever it is, an SVG has the values of indexed variables: of `bolts[pair_1]` the element with
+    `id="pair_1"` has it in `data-bolts`. Who shows it asks with another one when they have changed.
+    """
     watch = getattr(request.state, "watch", None)
     if watch is not None and (
         client.view is None or name not in names_of(own_tasks(client.view, watch.resource).values())
     ):
         raise ProblemFound(404, "no-such-instruction", message("refused.no-such-instruction.name", name=name))
-    return await instruction_answer(request.app.state.settings, name, if_none_match)
+    shown = client.view.variables if state is not None and client.view is not None else None
+    return await instruction_answer(request.app.state.settings, name, if_none_match, shown)
 
 
 @router.get("/topics")

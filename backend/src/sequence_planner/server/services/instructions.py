@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
+import re
 import stat
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, Final
+from xml.sax.saxutils import quoteattr
 
 from fastapi.concurrency import run_in_threadpool
 from starlette.responses import FileResponse, Response
 
-from sequence_planner.controller.views.station import TaskView
+from sequence_planner.controller.views.station import TaskView, VariableView
 from sequence_planner.model.files import is_binary, largest
 from sequence_planner.model.paths import INSTRUCTION, INSTRUCTIONS
 from sequence_planner.server.errors import ProblemFound
@@ -26,6 +29,7 @@ _TYPES: Final = {
     "mp4": "video/mp4",
     "webm": "video/webm",
 }
+_INDEXED: Final = re.compile(r"(?:^|\.)(\w+)\[([^\],]+)\]$")
 # Whoever opens one by itself sees it, and it runs nothing and loads nothing.
 _SANDBOX: Final = "default-src 'none'; style-src 'unsafe-inline'; sandbox; frame-ancestors 'none'"
 INSTRUCTION_ANSWERS: Final[dict[int | str, dict[str, Any]]] = {
@@ -44,8 +48,26 @@ def names_of(tasks: Iterable[TaskView]) -> set[str]:
     return {path.partition("#")[0].removeprefix(f"{INSTRUCTIONS}/") for path in paths}
 
 
-async def instruction_answer(settings: Settings, name: str, known: str | None) -> Response:
-    """Answer with the file of that name; with its tag alone where that is among those that are `known`.
+def with_state(svg: str, variables: Mapping[str, VariableView]) -> str:
+    """Return the drawing with the value of each indexed variable at the element that has its index as `id`: of
+    `bolts[pair_1]` the one with `id="pair_1"` has it in `data-bolts`. What is unknown is said of none.
+    """
+    for name, variable in variables.items():
+        found = _INDEXED.search(name)
+        if found is None or variable.value is None:
+            continue
+        value = str(variable.value).lower() if isinstance(variable.value, bool) else str(variable.value)
+        element = re.compile(rf'<[A-Za-z][^<>]*?\sid=(["\']){re.escape(found[2])}\1')
+        written = f" data-{found[1]}={quoteattr(value)}"
+        svg = element.sub(lambda each, written=written: each[0] + written, svg, count=1)  # type: ignore[misc]
+    return svg
+
+
+async def instruction_answer(
+    settings: Settings, name: str, known: str | None, shown: Mapping[str, VariableView] | None = None
+) -> Response:
+    """Answer with the file of that name; with its tag alone where that is among those that are `known`. A drawing has
+    the state of the variables that are `shown`.
 
     Raises `ProblemFound` where there is none.
     """
@@ -53,7 +75,11 @@ async def instruction_answer(settings: Settings, name: str, known: str | None) -
     if found is None:
         raise ProblemFound(404, "no-such-instruction", message("refused.no-such-instruction.name", name=name))
     path, status = found
-    tag = f'"{status.st_mtime_ns:x}-{status.st_size:x}"'
+    drawn = None
+    if shown is not None and path.suffix == ".svg":
+        drawn = with_state(await run_in_threadpool(path.read_text, encoding="utf-8", errors="replace"), shown)
+    of_state = "" if drawn is None else f"-{hashlib.sha256(drawn.encode()).hexdigest()[:16]}"
+    tag = f'"{status.st_mtime_ns:x}-{status.st_size:x}{of_state}"'
     headers = {
         "ETag": tag,
         "Cache-Control": "private, no-cache",
@@ -63,6 +89,8 @@ async def instruction_answer(settings: Settings, name: str, known: str | None) -
     }
     if known is not None and tag in (each.strip().removeprefix("W/") for each in known.split(",")):
         return Response(status_code=304, headers=headers)
+    if drawn is not None:
+        return Response(drawn, media_type=_TYPES["svg"], headers=headers)
     return FileResponse(path, media_type=_TYPES[path.suffix[1:]], headers=headers, stat_result=status)
 
 

@@ -96,8 +96,6 @@ export const frame = {
 		gap: 'A message was lost. Loading again.',
 		silent: 'Nothing new has come from the server.'
 	},
-	/** Of a step whose condition is told on request. */
-	waitsFor: 'waits for a condition',
 	mayStart: 'may start now',
 	/** What is said in the place of the next start where there is none. */
 	nothingNext: {

@@ -135,6 +135,9 @@ export const operate = {
 		startFirst: 'Begins once production is started',
 		modeFirst: 'Waits for automatic mode',
 		soAlready: 'Not needed now',
+		noOrder: 'No order asks for it',
+		orderPaused: 'Its order is paused',
+		laterInOrder: 'Comes later in its order',
 		doneOf: (done: number, all: number): string => `${done} of ${all} done`,
 		of: (done: number, all: number): string => `${done} of ${all}`,
 		stopped: 'stopped',
@@ -145,12 +148,11 @@ export const operate = {
 		once: 'done once: active again after a reset',
 		out: 'out of service',
 		asked: {
-			none: (): string => 'no job asks for it',
 			later: (job: string): string => `later in ${job}`,
 			now: (job: string): string => `for ${job}`,
 			done: (job: string): string => `done for ${job}`,
 			skipped: (job: string): string => `not needed for ${job}`
-		} as Readonly<Record<'none' | 'later' | 'now' | 'done' | 'skipped', (job: string) => string>>,
+		} as Readonly<Record<'later' | 'now' | 'done' | 'skipped', (job: string) => string>>,
 		leftOut: 'not in the plan'
 	},
 	service: {
@@ -209,7 +211,10 @@ export const operate = {
 		comesHere: 'What the station asks of you comes here.',
 		goesOn: 'Your task goes on',
 		toldAbove: 'Its problem is told above',
+		thenBegins: 'Then starts:',
 		thenMoves: 'Then moves:',
+		/** Of devices for which there is no plan before the task is done. */
+		mayMove: (who: string): string => `${who} may move as soon as this is done: keep clear.`,
 		next: 'Next for you:',
 	},
 	problem: {

@@ -88,7 +88,6 @@ export const frame: Text['frame'] = {
 		gap: 'Ett meddelande gick förlorat. Läser in igen.',
 		silent: 'Inget nytt har kommit från servern.'
 	},
-	waitsFor: 'väntar på ett villkor',
 	mayStart: 'får starta nu',
 	nothingNext: {
 		idle: 'inget att planera',

@@ -131,6 +131,9 @@ export const operate: Text['operate'] = {
 		startFirst: 'Börjar när produktionen har startats',
 		modeFirst: 'Väntar på automatik',
 		soAlready: 'Behövs inte nu',
+		noOrder: 'Ingen order kräver den',
+		orderPaused: 'Dess order är pausad',
+		laterInOrder: 'Kommer senare i sin order',
 		doneOf: (done, all) => `${done} av ${all} klara`,
 		of: (done, all) => `${done} av ${all}`,
 		stopped: 'stoppad',
@@ -141,7 +144,6 @@ export const operate: Text['operate'] = {
 		once: 'utförs en gång: aktiv igen efter återställning',
 		out: 'ur drift',
 		asked: {
-			none: () => 'inget jobb kräver den',
 			later: (job) => `senare i ${job}`,
 			now: (job) => `för ${job}`,
 			done: (job) => `klar för ${job}`,
@@ -200,7 +202,9 @@ export const operate: Text['operate'] = {
 		comesHere: 'Det stationen ber dig om kommer hit.',
 		goesOn: 'Din uppgift fortsätter',
 		toldAbove: 'Problemet berättas ovan',
+		thenBegins: 'Sedan börjar:',
 		thenMoves: 'Sedan rör sig:',
+		mayMove: (who) => `${who} kan röra sig så snart det här är klart: håll undan.`,
 		next: 'Nästa för dig:',
 	},
 	problem: {
