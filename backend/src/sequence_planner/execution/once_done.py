@@ -35,7 +35,7 @@ class OnceDone(Immutable):
     may_move: tuple[str, ...] = ()
 
 
-class Consequences:
+class TaskOutlook:
     """Tells of tasks what comes of them; what has been found counts as long as nothing has happened."""
 
     def __init__(self, execution: Executor) -> None:
@@ -43,7 +43,7 @@ class Consequences:
         self._at: object = None
         self._known: dict[str, OnceDone] = {}
 
-    def of(self, task: str, now: Timestamp) -> OnceDone:
+    def once_done(self, task: str, now: Timestamp) -> OnceDone:
         """Return what comes of it once what the ability `task` asks for is done."""
         execution = self._execution
         at = execution.revision, execution.plan.status, execution.plan.order.names, execution.conduct, execution.active
@@ -51,11 +51,11 @@ class Consequences:
             self._at = at
             self._known.clear()
         if task not in self._known:
-            self._known[task] = once_done(execution, task, now)
+            self._known[task] = _once_done(execution, task, now)
         return self._known[task]
 
 
-def once_done(execution: Executor, task: str, now: Timestamp) -> OnceDone:
+def _once_done(execution: Executor, task: str, now: Timestamp) -> OnceDone:
     """Return what comes of it once what the ability `task` asks for is done."""
     automaton = execution.automaton
     human = automaton.abilities[task].human
@@ -86,14 +86,14 @@ def _active(execution: Executor, run: CompiledRun, now: Timestamp) -> frozenset[
     """The operations that are active once `run` has gone on, also those that are next for a job."""
     automaton, conduct, active = execution.automaton, execution.conduct, execution.active
 
-    def reached(name: str) -> bool:
+    def is_at_goal(name: str) -> bool:
         return holds(automaton.operations[name].goal, run.values)
 
     for _ in range(_ROUNDS):
         found = run.update_operations(active)
-        branches = frozenset(name for name in automaton.branching_operations if reached(name))
+        branches = frozenset(name for name in automaton.branching_operations if is_at_goal(name))
         active = found - conduct.idle_operations(automaton, found, branches)
-        conduct = replace(conduct, jobs=conduct.jobs.advanced(automaton, active, reached, now))
+        conduct = replace(conduct, jobs=conduct.jobs.advanced(automaton, active, is_at_goal, now))
         run.record_activity(active)
     return active
 
@@ -125,12 +125,12 @@ def _started(execution: Executor, run: CompiledRun) -> list[str]:
 
 def _together(effects: Sequence[str], of: Callable[[str], Writes | None], never: frozenset[str]) -> Writes:
     """What happens at once; no one says of anything in `never` that it is done."""
-    together: dict[str, object] = {}
+    together: Writes = {}
     for name in effects:
         writes = of(name)
         if writes and not any(each in never and value is True for each, value in writes.items()):
             together |= {each: value for each, value in writes.items() if each not in together}
-    return together  # type: ignore[return-value]
+    return together
 
 
 def _acknowledgements(automaton: Automaton) -> frozenset[str]:

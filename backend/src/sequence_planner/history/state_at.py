@@ -113,7 +113,7 @@ def _plan(execution: Executor, called_off: CalledOff) -> PastPlanView:
     outlook = simulate_plan(order, execution.simulated(), execution.automaton)
     serving = {name: outlook.steps_for(name) for name in sorted(execution.active)}
 
-    def shown(step: PlannedStart, status: StepStatus) -> PastStepView:
+    def view_of(step: PlannedStart, status: StepStatus) -> PastStepView:
         return PastStepView(
             ability=step.ability,
             title=execution.automaton.abilities[step.ability].title,
@@ -126,10 +126,10 @@ def _plan(execution: Executor, called_off: CalledOff) -> PastPlanView:
         )
 
     past = [
-        shown(each, StepStatus.DONE if each.ended else StepStatus.RUNNING)
+        view_of(each, StepStatus.DONE if each.ended else StepStatus.RUNNING)
         for each in order.past
         if each.ended is None or each.number >= order.first
     ]
-    ahead = [shown(each, StepStatus.PLANNED if index else StepStatus.NEXT) for index, each in enumerate(order.ahead)]
+    ahead = [view_of(each, StepStatus.PLANNED if index else StepStatus.NEXT) for index, each in enumerate(order.ahead)]
     reason = reason_text(execution.plan.reason)
     return PastPlanView(status=execution.plan.status, reason=reason, reason_message=reason, steps=past + ahead)

@@ -25,7 +25,7 @@ from sequence_planner.controller.commands.tasks import (
 from sequence_planner.controller.views.station import InstructionView, NextMovesView, TaskProblemView, TaskView
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
-from sequence_planner.execution.once_done import Consequences, OnceDone
+from sequence_planner.execution.once_done import OnceDone, TaskOutlook
 from sequence_planner.language.types import Value
 from sequence_planner.texts.message import Argument, Message, message
 
@@ -116,7 +116,7 @@ class OpenTasks:
     ) -> None:
         self._execution, self._tasks = execution, tasks
         self._goes_on, self._waiting = goes_on, waiting
-        self._consequences = Consequences(execution)
+        self._outlook = TaskOutlook(execution)
 
     def view_part(self, moment: Timestamp) -> dict[str, object]:
         """Its part of the view."""
@@ -126,7 +126,7 @@ class OpenTasks:
         abilities, goes_on = automaton.abilities, self._goes_on()
         views = {}
         for id_, task in self._tasks.open.items():
-            then = self._consequences.of(task.ability, moment) if goes_on else OnceDone()
+            then = self._outlook.once_done(task.ability, moment) if goes_on else OnceDone()
             movers = _movers([abilities[name] for name in then.moves], then.may_move, automaton.resources)
             views[id_] = TaskView(
                 revision=task.revision,
