@@ -30,6 +30,7 @@ _TYPES: Final = {
     "webm": "video/webm",
 }
 _INDEXED: Final = re.compile(r"(?:^|\.)(\w+)\[([^\],]+)\]$")
+_WITH_ID: Final = re.compile(r"""<[A-Za-z][^<>]*?\sid=(["'])(?P<id>[^"'<>]*)\1""")
 # Whoever opens one by itself sees it, and it runs nothing and loads nothing.
 _SANDBOX: Final = "default-src 'none'; style-src 'unsafe-inline'; sandbox; frame-ancestors 'none'"
 INSTRUCTION_ANSWERS: Final[dict[int | str, dict[str, Any]]] = {
@@ -52,15 +53,14 @@ def with_state(svg: str, variables: Mapping[str, VariableView]) -> str:
     """Return the drawing with the value of each indexed variable at the element that has its index as `id`: of
     `bolts[pair_1]` the one with `id="pair_1"` has it in `data-bolts`. What is unknown is said of none.
     """
+    values: dict[str, str] = {}
     for name, variable in variables.items():
         found = _INDEXED.search(name)
         if found is None or variable.value is None:
             continue
         value = str(variable.value).lower() if isinstance(variable.value, bool) else str(variable.value)
-        element = re.compile(rf'<[A-Za-z][^<>]*?\sid=(["\']){re.escape(found[2])}\1')
-        written = f" data-{found[1]}={quoteattr(value)}"
-        svg = element.sub(lambda each, written=written: each[0] + written, svg, count=1)  # type: ignore[misc]
-    return svg
+        values[found[2]] = f"{values.get(found[2], '')} data-{found[1]}={quoteattr(value)}"
+    return _WITH_ID.sub(lambda element: element[0] + values.get(element["id"], ""), svg)
 
 
 async def instruction_answer(
