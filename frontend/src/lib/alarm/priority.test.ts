@@ -1,6 +1,6 @@
 import { expect, test } from 'vitest';
 import { alarm } from '#lib/testing/view.ts';
-import { byUrgency, isNew, saidState, setAside } from './priority.ts';
+import { byUrgency, isNew, setAside } from './priority.ts';
 
 const names = (alarms: [string, unknown][]): string[] => alarms.map(([name]) => name);
 
@@ -23,11 +23,4 @@ test('what is shelved or out of service stands apart', () => {
 test('an alarm is new until somebody has seen it, even when its cause has gone', () => {
 	const states = ['unacknowledged', 'returned', 'acknowledged', 'shelved', 'out-of-service'] as const;
 	expect(states.map((state) => isNew(alarm({ state })))).toEqual([true, true, false, false, false]);
-});
-
-test('what nobody has to acknowledge is a notice until somebody has looked at it', () => {
-	const low = { priority: 'low', state: 'acknowledged' } as const;
-	expect(saidState(alarm({ ...low, by: null }))).toBe('notice');
-	expect(saidState(alarm({ ...low, by: 'Eva' }))).toBe('acknowledged');
-	expect(saidState(alarm({ priority: 'medium', state: 'acknowledged', by: null }))).toBe('acknowledged');
 });

@@ -23,16 +23,6 @@ export function isTold(alarm: Alarm): boolean {
 	return alarm.state !== 'shelved' && alarm.state !== 'out-of-service';
 }
 
-/** Whether it tells something that nobody has to acknowledge. */
-export function isNotice(alarm: Pick<Alarm, 'priority' | 'state' | 'by'>): boolean {
-	return alarm.priority === 'low' && alarm.state === 'acknowledged' && alarm.by === null;
-}
-
-/** Its state as people are told it. */
-export function saidState(alarm: Pick<Alarm, 'priority' | 'state' | 'by'>): AlarmState | 'notice' {
-	return isNotice(alarm) ? 'notice' : alarm.state;
-}
-
 export type Alarms = Readonly<Record<string, Alarm>>;
 /** An alarm with its key. */
 export type Keyed = [key: string, alarm: Alarm];

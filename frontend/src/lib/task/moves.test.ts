@@ -1,6 +1,7 @@
 import { expect, test } from 'vitest';
 import { task } from '#lib/testing/view.ts';
-import { mayMove, movesOf, surelyOf } from './moves.ts';
+import { mayMove, surelyOf } from './may-move.ts';
+import { movesOf } from './moves.ts';
 
 test('what moves next says who moves, and each once', () => {
 	const robot = { name: 'robot', title: 'Robot UR10', moves: ['Move to the place of the nutrunner', 'Lock the tool to the robot'] };
