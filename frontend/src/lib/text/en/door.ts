@@ -51,15 +51,8 @@ export const door = {
 		open: 'Open the demonstration'
 	},
 	first: {
-		title: 'First start',
-		over: 'This station has an administrator already.',
-		become: 'You become the first administrator: you decide who else may do what.',
-		make: 'Become the administrator',
 		noAdministrator: 'This station has no administrator yet.',
 		how: 'How somebody becomes one',
-		nobody: 'Nobody can sign in yet: this station has no administrator.',
-		openLink: 'Open the link that the station showed on its terminal as it started. It works once and for 15 minutes; after that',
-		showsNew: 'with the station’s folder shows a new one. If you have loaded this page again, open the link again.'
 	},
 	refusal: {
 		notSent: 'Not sent',

@@ -49,15 +49,8 @@ export const door: Text['door'] = {
 		open: 'Öppna demonstrationen'
 	},
 	first: {
-		title: 'Första starten',
-		over: 'Stationen har redan en administratör, så ingen länk skapar en till.',
-		become: 'Du blir stationens första administratör, som bestämmer vad andra får göra.',
-		make: 'Bli administratör',
 		noAdministrator: 'Stationen har ingen administratör än.',
 		how: 'Hur någon blir det',
-		nobody: 'Ingen kan logga in än: stationen har ingen administratör.',
-		openLink: 'Öppna länken som stationen visade i sin terminal när den startade. Den fungerar en gång och i 15 minuter; därefter visar',
-		showsNew: 'med stationens mapp en ny. Har du laddat om sidan, så öppna länken igen.'
 	},
 	refusal: {
 		notSent: 'Inte skickat',
