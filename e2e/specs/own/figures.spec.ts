@@ -37,11 +37,11 @@ test.describe('of a station without shifts', () => {
 		await order(eva, '4711');
 		await order(eva, '4712');
 		await expect.poll(async () => (await read(eva)).made.planned).toBe(2);
-		await expect(strip.locator('[data-figure="made"]')).toHaveText('0 of 2 orders', { timeout: 15_000 });
+		await expect(strip.locator('[data-figure="made"]')).toHaveText('0 of 2 due today', { timeout: 15_000 });
 		await expect(strip.getByRole('img', { name: '0 of 2 orders are made, 2 were due by now' })).toBeVisible();
 
 		await eva.goto('/wall');
-		await expect(eva.locator('[data-figure="made"]')).toHaveText('0 of 2 orders');
+		await expect(eva.locator('[data-figure="made"]')).toHaveText('0 of 2 due today');
 		await expect(eva.getByText('2 behind. Mark: due by now.')).toBeVisible();
 		await examine(eva, 'wall');
 	});

@@ -47,6 +47,21 @@ def test_it_stays_told_with_what_a_person_does() -> None:
     assert alarm.consequence == "It can come again as soon as the station goes on."
 
 
+def test_what_never_began_is_told_so_however_long_it_was_waited_for() -> None:
+    """What a person does then is for its beginning, and not in place of what is begun once more."""
+    rig = Watched()
+    rig.faulty.start(Fault(FaultKind.STUCK, "nutrunner"), rig.now)
+    rig.start_production()
+    assert rig.run(120, until=lambda: LATE in rig.shown)
+    rig.run(40)
+    assert "has not finished within 30 s" in rig.shown[LATE].text
+    rig.execution.change_mode(Mode.HOLD, "Eva", Timestamp(rig.now, rig.now))
+    rig.run(2)
+    alarm = rig.shown[LATE]
+    assert alarm.text == "Nutrunner: “Run the nutrunner” did not begin within 30 s, until it was called off"
+    assert alarm.action.startswith("Get the nutrunner to turn.")
+
+
 def test_it_is_told_in_restart_mode_and_goes_when_the_station_goes_on() -> None:
     rig = stuck_and_held()
     since = rig.shown[LATE].since

@@ -70,3 +70,10 @@ test('with a run that does not go on its start is in sight, and a little of what
 	const spans = [20, 45, 120, 0];
 	expect([spanFor(5, spans), spanFor(9.5, spans), spanFor(30, spans), spanFor(500, spans)]).toEqual([20, 45, 0, 0]);
 });
+
+test('a run that was over before the alarm came is none of those that it tells of', () => {
+	const run = { id: '1', status: 'done' as const, started: 100 };
+	const steps = [step('run', 'nutrunner', 0, { ...run, ended: 102 }), step('run', 'nutrunner', 1, { ...run, id: '2', started: 110, ended: 140 })];
+	const alarms = { 'overdue:run': alarm({ kind: 'overdue', subject: 'run', priority: 'medium', resources: ['nutrunner'], since: 115 }) };
+	expect(steps.map((each) => stoppedBy(each, steps, alarms))).toEqual([null, 'medium']);
+});

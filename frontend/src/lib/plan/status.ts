@@ -94,11 +94,13 @@ export function stoppedSince({ steps }: Pick<Plan, 'steps'>, alarms: Alarms): nu
  * The alarm that tells of a run that it does not come to its end since then: of this ability, or of its resource, of which the
  * last one is meant.
  */
-function stopOf({ ability, started, resource }: PlanStep, steps: readonly PlanStep[], alarms: Alarms): Alarm | null {
+function stopOf({ ability, started, ended, resource }: PlanStep, steps: readonly PlanStep[], alarms: Alarms): Alarm | null {
 	if (started === null) return null;
+	/** One that was over before it came is none of those that it tells of. */
+	const isMeant = ({ since }: Alarm): boolean => since >= started && (ended === null || ended >= since);
 	const own = alarms[`overdue:${ability}`];
-	if (own !== undefined && !isOver(own) && own.since >= started) return own;
+	if (own !== undefined && !isOver(own) && isMeant(own)) return own;
 	if (steps.some((other) => other.resource === resource && (other.started ?? -Infinity) > started)) return null;
 	const alarm = failing(resource, alarms);
-	return alarm !== undefined && STUCK.has(alarm.kind) && alarm.since >= started ? alarm : null;
+	return alarm !== undefined && STUCK.has(alarm.kind) && isMeant(alarm) ? alarm : null;
 }

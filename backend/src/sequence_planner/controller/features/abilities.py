@@ -43,6 +43,7 @@ class Abilities:
         # Runs that do not go on, and those of them that a person has called off by a Hold since, which mends nothing.
         self._overdue: dict[str, Late] = {}
         self._halted: dict[str, Late] = {}
+        self._executed: set[str] = set()  # of what runs, what was seen to execute
 
     def after_tick(self, outcome: TickOutcome, moment: Timestamp) -> None:
         """After a tick: a conflict is gone in the next one, and what came of it lasts until one of the two goes on."""
@@ -114,14 +115,17 @@ class Abilities:
         self._halted = {name: late for name, late in halted.items() if name not in running}
         still = self._still.devices(monotonic)
         self._overdue = {}
+        self._executed &= running.keys()
         for name, step in running.items():
             ability = self._execution.automaton.abilities[name]
+            if self._execution.state[ability.flag("executing")] is True:
+                self._executed.add(name)
             late = overdue(step, ability, monotonic)
+            seconds = None if late is None else late.within
             if late is None and ability.resource in still and step.started is not None:
-                begun = self._execution.state[ability.flag("executing")] is True
-                late = Late(begun, round(monotonic - step.started.monotonic))
-            if late is not None and ability.human is None:
-                self._overdue[name] = late
+                seconds = round(monotonic - step.started.monotonic)
+            if seconds is not None and ability.human is None:
+                self._overdue[name] = Late(name in self._executed, seconds)
 
     def _late_and_halted(self) -> Iterator[Cause]:
         """Runs that were late when a person called them off: it is not known that what kept them is mended."""
@@ -132,7 +136,7 @@ class Abilities:
                 late,
                 self._run(ability, late, "late.finished-halted" if late.begun else "late.begun-halted"),
                 message("late.again"),
-                self._by_hand(ability, late) or self._check(ability, late),
+                (None if late.begun else self._by_hand(ability)) or self._check(ability, late),
                 follows=self._silences(ability),
             )
 
@@ -146,13 +150,12 @@ class Abilities:
             return message("late.check", resources=[resource])
         return message("late.check-receives", resource=resource)
 
-    def _by_hand(self, ability: Ability, late: Late) -> Wording | None:
-        """What a person does so that what devices did not do is so, in the words of the model; None without any."""
+    def _by_hand(self, ability: Ability) -> Wording | None:
+        """What a person does so that a run begins that did not, in the words of the model; None without any."""
         automaton = self._execution.automaton
         own = automaton.reactions.get(ability.name, ())
-        kind = "executing" if late.begun else "starting"
         for effect in automaton.effects:
-            for action in effect.actions if effect.name in own and effect.kind == kind else ():
+            for action in effect.actions if effect.name in own and effect.kind == "starting" else ():
                 if not isinstance(action.value, Constant):
                     continue
                 how = sentences_of(automaton).tell_by_hand(target(action), action.value.value)
