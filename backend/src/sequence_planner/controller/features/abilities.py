@@ -77,6 +77,7 @@ class Abilities:
 
     def causes(self, moment: Timestamp) -> Iterator[Cause]:
         """The causes of alarms that there are now."""
+        self._follow(moment.monotonic)
         yield from self._late(moment.monotonic)
         yield from self._late_and_halted()
         yield from self._standing_still(moment.monotonic)
@@ -87,7 +88,6 @@ class Abilities:
     def _late(self, monotonic: float) -> Iterator[Cause]:
         """Abilities that take longer than they may; those that are planned anew then are called off instead."""
         automaton = self._execution.automaton
-        self._follow(monotonic)
         for step in self._execution.plan.order.running:
             ability = automaton.abilities[step.ability]
             late = overdue(step, ability, monotonic)
